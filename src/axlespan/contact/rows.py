@@ -1,0 +1,94 @@
+"""Contact rows: under each wheel and time, the weights E of the structure's d.o.f. and the gap r (N12 (27), (28))."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from axlespan.contact.motion import SpeedHistory
+from axlespan.irregularity.profile import Profile
+from axlespan.running.path import PolynomialPath
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class WheelPath:
+    """What one group of wheels runs on: a path split into free and prescribed d.o.f., and a profile."""
+
+    wheels: IntArray  # (n_wheel,) positions among the contacts of the train
+    free: PolynomialPath  # in the numbers of the structure's free d.o.f.
+    prescribed: PolynomialPath | None  # in the numbers of the prescribed d.o.f. that move; None: none does
+    profile: Profile
+
+
+@dataclass(frozen=True, eq=False)
+class RowBlock:
+    """Rows for the wheels of one group at several times."""
+
+    dofs: IntArray  # (n_time, n_wheel, n_local)
+    weights: FloatArray  # (n_time, n_wheel, n_local); zero off the structure
+    prescribed_dofs: IntArray  # (n_time, n_wheel, n_local_p)
+    prescribed_weights: FloatArray  # (n_time, n_wheel, n_local_p)
+
+
+@dataclass(frozen=True, eq=False)
+class TrainRows:
+    """The contact rows of one train on its way over a structure."""
+
+    motion: SpeedHistory
+    start: float  # position of the head at time zero [m]
+    offsets: FloatArray  # (n_contact,) distances behind the head [m]
+    paths: Sequence[WheelPath]
+
+    @property
+    def n_contact(self) -> int:
+        """Number of contacts."""
+        return len(self.offsets)
+
+    def positions(self, time: FloatArray) -> FloatArray:
+        """Positions (n_time, n_contact) of the wheels along the line [m]."""
+        head = self.start + self.motion.distance(time)
+        return np.asarray(head[:, None] - self.offsets[None, :])
+
+    def on_structure(self, positions: FloatArray) -> npt.NDArray[np.bool_]:
+        """Which wheels (n_time, n_contact) touch the structure, their footprints included."""
+        result = np.zeros(positions.shape, dtype=bool)
+        for path in self.paths:
+            result[:, path.wheels] = path.free.carries(positions[:, path.wheels])
+        return result
+
+    def irregularity(self, positions: FloatArray, derivative: int = 0) -> FloatArray:
+        """R (n_time, n_contact) [m] under the wheels, or its derivatives along the line."""
+        result = np.empty(positions.shape)
+        for path in self.paths:
+            read = (path.profile.value, path.profile.slope, path.profile.curvature)[derivative]
+            result[:, path.wheels] = read(positions[:, path.wheels])
+        return result
+
+    def rows(self, positions: FloatArray, wheels: IntArray, derivative: int = 0) -> RowBlock:
+        """Rows for some wheels, at their positions (n_time, n_wheel), or derivatives along the line."""
+        n_local = max(path.free.dofs.shape[1] for path in self.paths)
+        moving = [path.prescribed for path in self.paths if path.prescribed is not None]
+        n_prescribed = max((path.dofs.shape[1] for path in moving), default=0)
+        shape = positions.shape
+        block = RowBlock(
+            np.zeros((*shape, n_local), dtype=np.int64),
+            np.zeros((*shape, n_local)),
+            np.zeros((*shape, n_prescribed), dtype=np.int64),
+            np.zeros((*shape, n_prescribed)),
+        )
+        for path in self.paths:
+            here = np.flatnonzero(np.isin(wheels, path.wheels))
+            dofs, weights = path.free.weights(positions[:, here], derivative)
+            block.dofs[:, here, : dofs.shape[2]] = dofs
+            block.weights[:, here, : dofs.shape[2]] = weights
+            if path.prescribed is not None:
+                dofs, weights = path.prescribed.weights(positions[:, here], derivative)
+                block.prescribed_dofs[:, here, : dofs.shape[2]] = dofs
+                block.prescribed_weights[:, here, : dofs.shape[2]] = weights
+        return block

@@ -1,0 +1,1 @@
+"""Element formulas: stiffness, mass and interpolation, vectorized over the elements of a family."""

@@ -1,0 +1,196 @@
+"""What a crossing becomes before it is computed: matrices of both bodies, contact rows, applied forces."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse as sp
+
+from axlespan.contact.rows import TrainRows, WheelPath
+from axlespan.dynamics.integrator import Matrices
+from axlespan.errors import InputError
+from axlespan.interaction.crossing import Crossing
+from axlespan.interaction.forces import AppliedForces
+from axlespan.interaction.settings import Settings
+from axlespan.model.motions import Constant
+from axlespan.model.system import System
+from axlespan.running.path import PolynomialPath
+from axlespan.running.structure import Structure
+from axlespan.vehicles.train import Train
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Fleet:
+    """The vehicles of a train as one block-diagonal system; moving forces have no d.o.f."""
+
+    matrices: Matrices
+    weight: FloatArray  # (n_contact,) static contact forces [N]
+    coupled: IntArray  # (n_coupled,) contacts that have a d.o.f., among all contacts
+    dofs: IntArray  # (n_coupled,) their d.o.f. in the fleet
+    vehicle_of: IntArray  # (n_coupled,) vehicle of each coupled contact
+    dof_names: tuple[str, ...]
+
+    @property
+    def forced(self) -> IntArray:
+        """Contacts that are moving forces."""
+        mask = np.ones(len(self.weight), dtype=bool)
+        mask[self.coupled] = False
+        return np.flatnonzero(mask)
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """A crossing with its settings, compiled."""
+
+    crossing: Crossing
+    settings: Settings
+    structure: Matrices
+    forces: AppliedForces
+    fleet: Fleet
+    rows: TrainRows
+    sensor_path: PolynomialPath  # of the first line, free d.o.f.
+    moving: IntArray  # (n_moving,) prescribed d.o.f. that move or are set down
+
+    @property
+    def times(self) -> FloatArray:
+        """Times (steps + 1,) [s]."""
+        return np.arange(self.settings.steps + 1) * self.settings.time_step
+
+
+def plan_for(crossing: Crossing, settings: Settings) -> Plan:
+    """Compile a crossing.
+
+    Raises
+    ------
+    InputError
+        If a wheel's line is unknown, no wheel is ever on the structure, or a sensor is off it.
+    """
+    system = crossing.structure.system
+    moving = np.array(
+        [
+            j
+            for j, motion in enumerate(system.motions)
+            if not (isinstance(motion, Constant) and motion.amount == 0.0)
+        ],
+        dtype=np.int64,
+    )
+    plan = Plan(
+        crossing=crossing,
+        settings=settings,
+        structure=matrices_of(system),
+        forces=AppliedForces.of(system),
+        fleet=fleet_of(crossing.train, crossing.gravity),
+        rows=_train_rows(crossing, settings, moving),
+        sensor_path=_split(next(iter(crossing.structure.lines.values())), system, system.free),
+        moving=moving,
+    )
+    _check_reach(plan)
+    _check_sensors(crossing.structure, settings)
+    return plan
+
+
+def matrices_of(system: System) -> Matrices:
+    """The free blocks of a system."""
+    blocks = system.partition
+    damping = blocks.C_FF if blocks.C_FF.nnz else None
+    return Matrices(blocks.K_FF, blocks.M_FF, damping, system.modal_damping)
+
+
+def fleet_of(train: Train, gravity: float) -> Fleet:
+    """All vehicles of a train as one system."""
+    kinds: dict[int, Matrices] = {}
+    blocks: list[Matrices] = []
+    names: list[str] = []
+    coupled: list[int] = []
+    dofs: list[int] = []
+    owner: list[int] = []
+    begin, contact = 0, 0
+    for i, item in enumerate(train.placements):
+        vehicle = item.vehicle
+        if vehicle.system is not None:
+            own = kinds.setdefault(id(vehicle), matrices_of(vehicle.system))
+            blocks.append(own)
+            names += [f"{i + 1}.{vehicle.system.free_name(j)}" for j in range(own.size)]
+            coupled += range(contact, contact + len(vehicle.contacts))
+            dofs += (begin + vehicle.contact_dofs).tolist()
+            owner += [i] * len(vehicle.contacts)
+            begin += own.size
+        contact += len(vehicle.contacts)
+    index = np.int64
+    return Fleet(
+        _block_diagonal(blocks),
+        train.static_forces(gravity),
+        np.array(coupled, dtype=index),
+        np.array(dofs, dtype=index),
+        np.array(owner, dtype=index),
+        tuple(names),
+    )
+
+
+def _block_diagonal(blocks: Sequence[Matrices]) -> Matrices:
+    if not blocks:
+        empty = sp.csr_array((0, 0), dtype=float)
+        return Matrices(empty, empty)
+    if any(block.C_low_rank is not None for block in blocks):
+        raise InputError(
+            "is not available for vehicles", field="damping", value="modal", fix="Use Rayleigh damping"
+        )
+    stiffness = sp.csr_array(sp.block_diag([block.K for block in blocks], format="csr"))
+    mass = sp.csr_array(sp.block_diag([block.M for block in blocks], format="csr"))
+    if all(block.C is None for block in blocks):
+        return Matrices(stiffness, mass)
+    zero = [sp.csr_array(block.K.shape) if block.C is None else block.C for block in blocks]
+    return Matrices(stiffness, mass, sp.csr_array(sp.block_diag(zero, format="csr")))
+
+
+def _train_rows(crossing: Crossing, settings: Settings, moving: IntArray) -> TrainRows:
+    system = crossing.structure.system
+    lines: dict[str, list[int]] = {}
+    for i, (_, _, point, _) in enumerate(crossing.train.contacts):
+        lines.setdefault(point.line, []).append(i)
+    paths = []
+    for name, wheels in lines.items():
+        path = crossing.structure.line(name)
+        if settings.footprint > 0.0:
+            path = path.averaged(settings.footprint)
+        free = _split(path, system, system.free)
+        prescribed = _split(path, system, system.prescribed[moving]) if len(moving) else None
+        paths.append(WheelPath(np.array(wheels, dtype=np.int64), free, prescribed, crossing.irregularity))
+    return TrainRows(crossing.motion, crossing.start, crossing.train.offsets, tuple(paths))
+
+
+def _split(path: PolynomialPath, system: System, keep: IntArray) -> PolynomialPath:
+    number = np.full(system.size, -1, dtype=np.int64)
+    number[keep] = np.arange(len(keep))
+    return path.renumbered(number)
+
+
+def _check_reach(plan: Plan) -> None:
+    """Some wheel must be on the structure at some time, or the run says nothing about it."""
+    head = plan.crossing.start + plan.crossing.motion.distance(plan.times[[0, -1]])
+    path = plan.rows.paths[0].free
+    first, last = head[0] - plan.rows.offsets.max(), head[1]
+    if last < path.start or first > path.stop:
+        raise InputError(
+            f"never brings a wheel onto the structure, which lies between {path.start:g} and {path.stop:g} m",
+            field="crossing",
+            value=f"the first wheel runs from {head[0]:g} to {head[1]:g} m",
+            fix="Check start, speed, time_step and steps",
+        )
+
+
+def _check_sensors(structure: Structure, settings: Settings) -> None:
+    path = next(iter(structure.lines.values()))
+    for name, position in settings.sensors.items():
+        if not path.start <= position <= path.stop:
+            raise InputError(
+                f"must lie on the structure, between {path.start:g} and {path.stop:g} m",
+                field=f"sensors.{name}",
+                value=position,
+            )

@@ -1,0 +1,123 @@
+"""The result of a crossing: named arrays over time, the outcome and the self-checks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from axlespan.errors import InputError, Outcome
+
+if TYPE_CHECKING:
+    import xarray
+
+FloatArray = npt.NDArray[np.float64]
+
+# name -> (dimension, unit, meaning)
+VARIABLES: dict[str, tuple[str, str, str]] = {
+    "sensor_displacement": ("sensor", "m", "vertical displacement at the sensors, positive upward"),
+    "sensor_velocity": ("sensor", "m/s", "vertical velocity at the sensors"),
+    "sensor_acceleration": ("sensor", "m/s^2", "vertical acceleration at the sensors"),
+    "contact_force": ("contact", "N", "contact force on the vehicle, compression positive"),
+    "contact_position": ("contact", "m", "position of the wheel along the running line"),
+    "vehicle_displacement": (
+        "vehicle_dof",
+        "m or rad",
+        "displacement from the static position on level ground",
+    ),
+    "vehicle_velocity": ("vehicle_dof", "m/s or rad/s", "velocity of the vehicle's degrees of freedom"),
+    "vehicle_acceleration": (
+        "vehicle_dof",
+        "m/s^2 or rad/s^2",
+        "acceleration of the vehicle's degrees of freedom",
+    ),
+    "support_reaction": ("support", "N or N m", "force of the support on the structure"),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """What a crossing gave, at the times kept."""
+
+    time: FloatArray  # (n_time,) [s]
+    sensor: tuple[str, ...]
+    contact: tuple[str, ...]
+    vehicle_dof: tuple[str, ...]
+    support: tuple[str, ...]
+    sensor_displacement: FloatArray  # (n_time, n_sensor) [m]
+    sensor_velocity: FloatArray
+    sensor_acceleration: FloatArray
+    contact_force: FloatArray  # (n_time, n_contact) [N]
+    contact_position: FloatArray  # (n_time, n_contact) [m]
+    vehicle_displacement: FloatArray  # (n_time, n_vehicle_dof) [m or rad]
+    vehicle_velocity: FloatArray
+    vehicle_acceleration: FloatArray
+    support_reaction: FloatArray  # (n_time, n_support) [N or N m]
+    outcome: Outcome
+    checks: Mapping[str, Any] = field(default_factory=dict)
+    facts: Mapping[str, Any] = field(default_factory=dict)  # about the run: sizes, solver, timing, notes
+
+    def at(self, quantity: str, name: str) -> FloatArray:
+        """The history (n_time,) of one named sensor, contact, vehicle d.o.f. or support.
+
+        Raises
+        ------
+        InputError
+            If the quantity or the name is unknown.
+
+        Examples
+        --------
+        ``result.at("contact_force", "1.1")``, ``result.at("vehicle_acceleration", "1.body.z")``
+        """
+        if quantity not in VARIABLES:
+            raise InputError(f"must be one of {', '.join(VARIABLES)}", field="quantity", value=quantity)
+        names: tuple[str, ...] = getattr(self, VARIABLES[quantity][0])
+        if name not in names:
+            shown = ", ".join(names[:12]) or "none"
+            raise InputError(
+                f"is not a {VARIABLES[quantity][0]} of this result",
+                field="name",
+                value=name,
+                fix=f"Known: {shown}",
+            )
+        values: FloatArray = getattr(self, quantity)[:, names.index(name)]
+        return values
+
+    def to_xarray(self) -> xarray.Dataset:
+        """The result as an xarray Dataset with the names and units of result.nc.
+
+        Raises
+        ------
+        InputError
+            If xarray is not installed.
+        """
+        try:
+            import xarray as xr
+        except ImportError as error:
+            raise InputError(
+                "is not installed", field="xarray", fix="pip install 'axlespan[xarray]'"
+            ) from error
+        variables = {
+            name: (("time", dimension), getattr(self, name), {"units": unit, "long_name": meaning})
+            for name, (dimension, unit, meaning) in VARIABLES.items()
+        }
+        dimensions = dict.fromkeys(dimension for dimension, _, _ in VARIABLES.values())
+        coordinates = {name: (name, np.array(getattr(self, name), dtype=object)) for name in dimensions}
+        coordinates["time"] = ("time", self.time, {"units": "s", "long_name": "time"})  # type: ignore[assignment]
+        return xr.Dataset(
+            variables, coordinates, {"outcome": self.outcome.code, "outcome_message": self.outcome.message}
+        )
+
+    def __repr__(self) -> str:
+        peak = f"{self.contact_force.max():.6g} N" if self.contact_force.size else "none"
+        lines = [
+            f"Result: {self.outcome.code}, {len(self.time)} times to {self.time[-1]:.6g} s",
+            f"  sensors: {', '.join(self.sensor) or 'none'}; {len(self.contact)} contacts, largest force {peak}",
+        ]
+        for i, name in enumerate(self.sensor):
+            u = self.sensor_displacement[:, i]
+            lines.append(f"  {name}: displacement {1e3 * u.min():.4f} to {1e3 * u.max():.4f} mm")
+        return "\n".join(lines)

@@ -1,0 +1,145 @@
+"""How a crossing is computed, and the defaults that follow from what the wheels are."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from axlespan.dynamics.alpha import Alpha
+from axlespan.errors import InputError
+from axlespan.interaction.crossing import Crossing
+
+#: Ways of coupling vehicle and structure.
+COUPLINGS = ("direct", "iterative", "refactored", "literal")
+
+#: α for wheels with mass, or with a dashpot on a massless contact, when none is given.
+DAMPED_ALPHA = -0.1
+
+#: Largest footprint [m] and its largest share of the running line, when none is given.
+FOOTPRINT, FOOTPRINT_SHARE = 0.3, 0.01
+
+
+@dataclass(frozen=True)
+class Iteration:
+    """Settings of the iterative coupling."""
+
+    tolerance: float = 1e-10  # of the largest static contact force [-]
+    relaxation: float = 1.0  # share of the new force taken at each iteration [-]
+    limit: int = 200  # iterations in a step
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.tolerance < 1.0:
+            raise InputError("must lie between 0 and 1", field="tolerance", value=self.tolerance)
+        if not 0.0 < self.relaxation <= 1.0:
+            raise InputError("must be above 0 and at most 1", field="relaxation", value=self.relaxation)
+        if self.limit < 1:
+            raise InputError("must be at least 1", field="max_iterations", value=self.limit)
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything about a run that is not the crossing itself."""
+
+    time_step: float  # [s]
+    steps: int
+    method: Alpha
+    footprint: float = 0.0  # [m]
+    coupling: str = "direct"
+    solver: str = "auto"
+    every: int = 1
+    sensors: Mapping[str, float] = field(default_factory=dict)  # name -> position [m]
+    iteration: Iteration = field(default_factory=Iteration)
+    notes: Sequence[str] = ()  # what was chosen by default, and warnings
+
+
+def settings_for(
+    crossing: Crossing,
+    *,
+    time_step: float,
+    steps: int,
+    method: Alpha | None = None,
+    footprint: float | None = None,
+    coupling: str = "direct",
+    solver: str = "auto",
+    every: int = 1,
+    sensors: Mapping[str, float] | None = None,
+    iteration: Iteration | None = None,
+) -> Settings:
+    """Check the settings of a run and fill in what the user left to us.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+    """
+    _check_counts(time_step, steps, every)
+    if coupling not in COUPLINGS:
+        raise InputError(f"must be one of {', '.join(COUPLINGS)}", field="method", value=coupling)
+    notes: list[str] = []
+    chosen = _method(crossing, method, notes)
+    length = _footprint(crossing, footprint, notes)
+    return Settings(
+        float(time_step),
+        int(steps),
+        chosen,
+        length,
+        coupling,
+        solver,
+        int(every),
+        dict(sensors or {}),
+        iteration or Iteration(),
+        tuple(notes),
+    )
+
+
+def _check_counts(time_step: float, steps: int, every: int) -> None:
+    if not np.isfinite(time_step) or time_step <= 0.0:
+        raise InputError("must be positive", field="time_step", value=time_step, fix="Write for example 1 ms")
+    if isinstance(steps, bool) or int(steps) != steps or steps < 1:
+        raise InputError("must be a whole number of at least 1", field="steps", value=steps)
+    if steps > 100_000_000:
+        raise InputError("must be at most 100 000 000", field="steps", value=steps)
+    if isinstance(every, bool) or int(every) != every or every < 1:
+        raise InputError("must be a whole number of at least 1", field="every", value=every)
+
+
+def _method(crossing: Crossing, method: Alpha | None, notes: list[str]) -> Alpha:
+    vehicles = [item.vehicle for item in crossing.train.placements]
+    massive = any(vehicle.has_massive_contacts for vehicle in vehicles)
+    dashpot = any(vehicle.has_dashpot_contacts for vehicle in vehicles)
+    why = "wheels have mass" if massive else "a dashpot ends at a massless contact point"
+    if method is None:
+        if not (massive or dashpot):
+            return Alpha(0.0)
+        notes.append(
+            f"alpha = {DAMPED_ALPHA} by default, because {why}: numerical noise in the contact force is damped"
+        )
+        return Alpha(DAMPED_ALPHA)
+    if method.alpha == 0.0 and method.gamma == 0.5 and (massive or dashpot):
+        notes.append(
+            f"warning: alpha = 0, but {why}: the contact force may oscillate from step to step without bound; "
+            f"leave alpha out, or use alpha: {DAMPED_ALPHA}"
+        )
+    return method
+
+
+def _footprint(crossing: Crossing, footprint: float | None, notes: list[str]) -> float:
+    length = crossing.structure.length
+    if footprint is not None:
+        if not 0.0 <= footprint <= length:
+            raise InputError(
+                f"must be between 0 and the length of the line, {length:g} m",
+                field="footprint",
+                value=footprint,
+            )
+        return float(footprint)
+    if not any(item.vehicle.has_massive_contacts for item in crossing.train.placements):
+        return 0.0
+    chosen = min(FOOTPRINT, FOOTPRINT_SHARE * length)
+    notes.append(
+        f"footprint of {chosen:.3g} m by default, because wheels have mass: a kink in the line, as at the end of a bare span, "
+        "does not act as a blow"
+    )
+    return chosen

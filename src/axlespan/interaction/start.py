@@ -1,0 +1,233 @@
+"""How a run starts: static equilibrium where the train stands, then what the motion along the line asks for.
+
+At time zero each vehicle is in static equilibrium (the irregularity under its wheels included), its bodies
+have no vertical velocity, and its wheels have the velocity and acceleration of the line under them: the
+first and second time derivative of N12 (27) along s(t),
+
+.. math::
+   \\dot u_X &= \\dot s (r' + E' u) + E \\dot u \\\\
+   \\ddot u_X &= \\dot s^2 (r'' + E'' u) + \\ddot s (r' + E' u) + 2 \\dot s E' \\dot u + E \\ddot u
+
+Accelerations and contact forces follow from the equations of motion and this constraint together.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse as sp
+
+from axlespan.dynamics.integrator import Matrices, State
+from axlespan.interaction.plan import Fleet, Plan
+from axlespan.linalg.factor import Factor, factorize
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+# Share of the effective stiffness that stands in for the missing mass of massless d.o.f.: their
+# accelerations then are those that keep the static balance of forces, to this relative accuracy.
+_SUBSTITUTE = 1e-7
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """States and contact forces at time zero."""
+
+    structure: State
+    fleet: State
+    forces: FloatArray  # (n_contact,) [N]
+
+
+@dataclass(frozen=True, eq=False)
+class _Rows:
+    """Rows of the coupled wheels at time zero, with derivatives along the line."""
+
+    E: sp.csr_array  # (n_contact, n)
+    E1: sp.csr_array
+    E2: sp.csr_array
+    height: FloatArray  # (n_contact,) r + E_P u_P [m]
+    rate: FloatArray  # ṡ (r' + E_P' u_P) + E_P u̇_P [m/s]
+    second_rate: FloatArray  # [m/s^2]
+
+
+def start_of(plan: Plan) -> Start:
+    """The state at time zero."""
+    rows, fleet = _rows_at_zero(plan), plan.fleet
+    n, n_contact = plan.structure.size, len(fleet.weight)
+    external = plan.forces.at(0.0) if plan.forces.n_term else np.zeros(n)
+    static = np.where(plan.forces.inertial, 0.0, plan.forces.factors(np.zeros(1))[0])
+    u_s, forces = _static(plan, plan.forces.vectors @ static, rows)
+    u_v, forces = _vehicles_at(fleet, forces, rows, u_s)
+    structure = State(u_s, np.zeros(n), np.zeros(n))
+    vehicles = State(u_v, np.zeros(fleet.matrices.size), np.zeros(fleet.matrices.size))
+    x = fleet.coupled
+    speed = float(plan.crossing.motion.speed(np.zeros(1))[0])
+    vehicles.v[fleet.dofs] = (rows.rate + speed * (rows.E1 @ u_s))[x]
+    forces = _accelerate(plan, structure, vehicles, external, rows, forces.reshape(n_contact), speed)
+    return Start(structure, vehicles, forces)
+
+
+def _rows_at_zero(plan: Plan) -> _Rows:
+    zero = np.zeros(1)
+    motion = plan.crossing.motion
+    positions = plan.rows.positions(zero)
+    speed, acceleration = float(motion.speed(zero)[0]), float(motion.acceleration(zero)[0])
+    wheels = np.arange(plan.rows.n_contact)
+    blocks = [plan.rows.rows(positions, wheels, derivative) for derivative in range(3)]
+    n = plan.structure.size
+    row = np.broadcast_to(wheels[:, None], blocks[0].dofs[0].shape).ravel()
+    matrices = [
+        sp.csr_array(sp.coo_array((b.weights[0].ravel(), (row, b.dofs[0].ravel())), shape=(len(wheels), n)))
+        for b in blocks
+    ]
+    r, r1, r2 = (plan.rows.irregularity(positions, derivative)[0] for derivative in range(3))
+    height, rate = r.copy(), speed * r1
+    second = speed**2 * r2 + acceleration * r1
+    if len(plan.moving):
+        motions = [plan.crossing.structure.system.motions[j] for j in plan.moving]
+        u, v, a = (
+            np.array([getattr(m, name)(zero)[0] for m in motions])
+            for name in ("value", "velocity", "acceleration")
+        )
+        p0, p1, p2 = (
+            lambda q, b=b: (q[b.prescribed_dofs[0]] * b.prescribed_weights[0]).sum(axis=1) for b in blocks
+        )
+        height += p0(u)
+        rate += speed * p1(u) + p0(v)
+        second += speed**2 * p2(u) + acceleration * p1(u) + 2.0 * speed * p1(v) + p0(a)
+    return _Rows(*matrices, height, rate, second)
+
+
+def _static(plan: Plan, external: FloatArray, rows: _Rows) -> tuple[FloatArray, FloatArray]:
+    """Deflection of the structure and contact forces with the train at rest on it."""
+    fleet, n = plan.fleet, plan.structure.size
+    forces = fleet.weight.copy()
+    carried = np.flatnonzero(np.abs(rows.E).sum(axis=1) > 0.0)
+    if not len(carried) and not np.any(external):
+        return np.zeros(n), forces + _elastic_share(fleet, rows.height)
+    factor = factorize(plan.structure.K, kind=plan.settings.solver)
+    u_0 = factor.solve(external.copy())
+    columns = (
+        factor.solve(np.ascontiguousarray(rows.E[carried].T.toarray())) if len(carried) else np.zeros((n, 0))
+    )
+    compliance = np.zeros((len(forces), len(forces)))
+    compliance[:, carried] = rows.E @ columns
+    # X = X_st + k (E u + r) with E u = E u_0 - (E K⁻¹ Eᵀ) X
+    k = _condensed(fleet)
+    right = forces + k @ (rows.E @ u_0 + rows.height)
+    forces = np.linalg.solve(np.eye(len(forces)) + k @ compliance, right)
+    return u_0 - columns @ forces[carried], forces
+
+
+def _condensed(fleet: Fleet) -> FloatArray:
+    """Static stiffness (n_contact, n_contact) of the vehicles seen from their contact points."""
+    n_contact = len(fleet.weight)
+    result = np.zeros((n_contact, n_contact))
+    if len(fleet.coupled):
+        rest = np.setdiff1d(np.arange(fleet.matrices.size), fleet.dofs)
+        stiffness = sp.csr_array(fleet.matrices.K)
+        own = stiffness[fleet.dofs][:, fleet.dofs].toarray()
+        if len(rest):
+            link = stiffness[rest][:, fleet.dofs].toarray()
+            own = own - link.T @ factorize(sp.csr_array(stiffness[rest][:, rest])).solve(
+                np.ascontiguousarray(link)
+            )
+        scale = np.abs(stiffness.diagonal()[fleet.dofs])
+        own[np.abs(own) < 1e-12 * np.sqrt(np.outer(scale, scale))] = (
+            0.0  # statically determinate vehicles: rounding
+        )
+        result[np.ix_(fleet.coupled, fleet.coupled)] = own
+    return result
+
+
+def _elastic_share(fleet: Fleet, heights: FloatArray) -> FloatArray:
+    """Change of the contact forces (n_contact,) from an uneven level under vehicles on many wheels."""
+    return np.asarray(_condensed(fleet) @ heights) if np.any(heights) else np.zeros(len(fleet.weight))
+
+
+def _vehicles_at(
+    fleet: Fleet, forces: FloatArray, rows: _Rows, u_s: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Displacements of the vehicles at rest on the deflected, uneven line."""
+    u = np.zeros(fleet.matrices.size)
+    if not len(fleet.coupled):
+        return u, forces
+    u[fleet.dofs] = (rows.height + rows.E @ u_s)[fleet.coupled]
+    rest = np.setdiff1d(np.arange(fleet.matrices.size), fleet.dofs)
+    if len(rest) and np.any(u):
+        stiffness = sp.csr_array(fleet.matrices.K)
+        u[rest] = factorize(sp.csr_array(stiffness[rest][:, rest])).solve(-(stiffness[rest] @ u))
+    return u, forces
+
+
+def _accelerate(
+    plan: Plan,
+    structure: State,
+    vehicles: State,
+    external: FloatArray,
+    rows: _Rows,
+    static: FloatArray,
+    speed: float,
+) -> FloatArray:
+    """Fill in the accelerations of both bodies; return the contact forces (n_contact,)."""
+    fleet, x = plan.fleet, plan.fleet.coupled
+    known = np.zeros(len(static))
+    known[fleet.forced] = fleet.weight[fleet.forced]
+    acceleration = float(plan.crossing.motion.acceleration(np.zeros(1))[0])
+    out_of_balance = external - plan.structure.K @ structure.u - plan.structure.damping_force(structure.v)
+    out_of_balance -= rows.E.T @ known
+    carried = np.abs(rows.E[x]).sum(axis=1) > 0.0
+    still = not np.any(carried) and np.abs(out_of_balance).max(initial=0.0) <= 1e-9 * max(
+        np.abs(external).max(initial=0.0), 1e-30
+    )
+    structure_mass = None if still else _mass_factor(plan.structure, plan)
+    columns = np.zeros((plan.structure.size, len(x)))
+    if structure_mass is not None:
+        structure.a[:] = structure_mass.solve(_where_mass(plan.structure, out_of_balance))
+        if np.any(carried):
+            columns = structure_mass.solve(np.ascontiguousarray(rows.E[x].T.toarray()))
+    if not len(x):
+        return known
+    m = fleet.matrices
+    net = -(m.K @ vehicles.u) - m.damping_force(vehicles.v)
+    net[fleet.dofs] -= fleet.weight[x]
+    vehicle_mass = _mass_factor(m, plan)
+    # The wheels' d.o.f. take the contact force; other massless d.o.f. are in balance already.
+    free = vehicle_mass.solve(_where_mass(m, net, fleet.dofs))
+    unit = np.zeros((m.size, len(x)))
+    unit[fleet.dofs, np.arange(len(x))] = 1.0
+    responses = vehicle_mass.solve(unit)
+    wanted = rows.second_rate[x] + (
+        rows.E[x] @ structure.a
+        + speed**2 * (rows.E2[x] @ structure.u)
+        + acceleration * (rows.E1[x] @ structure.u)
+        + 2.0 * speed * (rows.E1[x] @ structure.v)
+    )
+    system = responses[fleet.dofs] + rows.E[x] @ columns
+    forces = np.linalg.solve(system, wanted - free[fleet.dofs])
+    vehicles.a[:] = free + responses @ forces
+    structure.a -= columns @ forces
+    known[x] = forces
+    return known
+
+
+def _mass_factor(matrices: Matrices, plan: Plan) -> Factor:
+    """Factor of M, with a trace of stiffness where a d.o.f. has no mass."""
+    diagonal = matrices.M.diagonal()
+    mass = matrices.M
+    if np.any(diagonal <= 0.0):
+        dt = plan.settings.time_step
+        mass = mass + (_SUBSTITUTE * 0.25 * dt**2) * matrices.K
+        if matrices.C is not None:
+            mass = mass + (_SUBSTITUTE * 0.5 * dt) * matrices.C
+    return factorize(sp.csr_array(mass), kind=plan.settings.solver)
+
+
+def _where_mass(matrices: Matrices, force: FloatArray, also: IntArray | None = None) -> FloatArray:
+    """The force, without the rounding that stands on massless d.o.f. in balance."""
+    mask = matrices.M.diagonal() > 0.0
+    if also is not None:
+        mask[also] = True
+    return np.where(mask, force, 0.0)

@@ -1,0 +1,315 @@
+"""A finite element model: nodes, parts, ties, supports, damping and loads; it compiles to a System."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from axlespan.elements.beam import BeamProperties
+from axlespan.errors import InputError
+from axlespan.model.damping import Damping
+from axlespan.model.dofs import COMPONENTS, component_indices, nearest
+from axlespan.model.materials import require_positive
+from axlespan.model.motions import Constant, Motion
+from axlespan.model.parts import BarPart, BeamPart, MassPart, Part, SpringPart
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+_PLANE = ("x", "z", "ry")
+
+
+@dataclass(frozen=True)
+class Support:
+    """A prescribed d.o.f."""
+
+    name: str
+    node: int
+    component: str
+    motion: Motion
+
+
+@dataclass(frozen=True)
+class Tie:
+    """A d.o.f. that follows others: u_slave = Σ coefficient · u_master."""
+
+    slave: tuple[int, str]
+    masters: tuple[tuple[int, str, float], ...]
+
+
+@dataclass(frozen=True)
+class NodalLoad:
+    """A force [N] or moment [N m] at a node, with an optional history factor of time."""
+
+    node: int
+    component: str
+    amount: float
+    history: Callable[[FloatArray], FloatArray] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """A model in the x-z plane (``plane=True``: components x, z, ry) or in space (all six).
+
+    Models don't change: every ``with_…`` returns a new one.
+    """
+
+    points: FloatArray = field(default_factory=lambda: np.empty((0, 3)))  # (n_node, 3) [m]
+    plane: bool = True
+    node_names: Mapping[str, int] = field(default_factory=dict)
+    parts: tuple[Part, ...] = ()
+    supports: tuple[Support, ...] = ()
+    ties: tuple[Tie, ...] = ()
+    loads: tuple[NodalLoad, ...] = ()
+    damping: Damping | None = None
+
+    # --- nodes -------------------------------------------------------------------------------
+
+    def with_nodes(self, points: npt.ArrayLike, names: Sequence[str] | None = None) -> Model:
+        """Append nodes at points (n, 3), or (n, 2) as x and z; the first ones get the names given."""
+        new = np.atleast_2d(np.asarray(points, float))
+        if new.shape[1] == 2:
+            new = np.column_stack([new[:, 0], np.zeros(len(new)), new[:, 1]])
+        if not np.all(np.isfinite(new)):
+            raise InputError(
+                "must be finite",
+                field="node coordinates",
+                value=new[~np.isfinite(new).all(axis=1)][0].tolist(),
+            )
+        if self.plane and np.any(new[:, 1] != 0.0):
+            raise InputError("must have y = 0 in a plane model", field="node coordinates")
+        labels = dict(self.node_names)
+        for i, name in enumerate(names or ()):
+            if name in labels:
+                raise InputError("is already the name of a node", field="node", value=name)
+            labels[name] = len(self.points) + i
+        return replace(self, points=np.vstack([self.points, new]), node_names=labels)
+
+    def node(self, reference: int | str) -> int:
+        """Index of a node, from its index or its name.
+
+        Raises
+        ------
+        InputError
+            If there is no such node.
+        """
+        if isinstance(reference, str):
+            if reference in self.node_names:
+                return self.node_names[reference]
+            if (
+                reference[:1] == "n"
+                and reference[1:].isdigit()
+                and 0 < int(reference[1:]) <= len(self.points)
+            ):
+                return int(reference[1:]) - 1
+            raise nearest(reference, list(self.node_names), "node")
+        if not 0 <= int(reference) < len(self.points):
+            raise InputError(
+                f"must be a node between 0 and {len(self.points) - 1}", field="node", value=reference
+            )
+        return int(reference)
+
+    def node_label(self, index: int) -> str:
+        """Name of a node; ``n1``, ``n2``, … for those without one."""
+        for name, i in self.node_names.items():
+            if i == index:
+                return name
+        return f"n{index + 1}"
+
+    def node_labels(self) -> list[str]:
+        """Names of all nodes."""
+        labels = [f"n{i + 1}" for i in range(len(self.points))]
+        for name, i in self.node_names.items():
+            labels[i] = name
+        return labels
+
+    # --- parts -------------------------------------------------------------------------------
+
+    def with_part(self, part: Part) -> Model:
+        """Append a part."""
+        nodes = np.asarray(part.nodes)
+        if nodes.size and (nodes.min() < 0 or nodes.max() >= len(self.points)):
+            raise InputError(
+                f"must use nodes between 0 and {len(self.points) - 1}",
+                field=f"part '{part.name}'",
+                value=int(nodes.max()),
+            )
+        return replace(self, parts=(*self.parts, part))
+
+    def with_beams(
+        self,
+        nodes: npt.ArrayLike,
+        properties: BeamProperties,
+        *,
+        name: str = "beams",
+        up: npt.ArrayLike | None = None,
+    ) -> Model:
+        """Append beams between pairs of nodes (n_element, 2).
+
+        In a plane model, beams without axial stiffness have no d.o.f. along x.
+        """
+        components: tuple[str, ...] = COMPONENTS
+        if self.plane:
+            components = _PLANE if np.any(np.asarray(properties.axial_stiffness) > 0.0) else ("z", "ry")
+        direction = None if up is None else np.asarray(up, float)
+        return self.with_part(BeamPart(name, _pairs(nodes), properties, components, direction))
+
+    def with_bars(
+        self,
+        nodes: npt.ArrayLike,
+        axial_stiffness: npt.ArrayLike,
+        mass_per_length: npt.ArrayLike = 0.0,
+        *,
+        name: str = "bars",
+    ) -> Model:
+        """Append bars between pairs of nodes (n_element, 2): EA [N], mass [kg/m]."""
+        pairs = _pairs(nodes)
+        n = (len(pairs),)
+        part = BarPart(
+            name,
+            pairs,
+            np.broadcast_to(np.asarray(axial_stiffness, float), n),
+            np.broadcast_to(np.asarray(mass_per_length, float), n),
+            ("x", "z") if self.plane else ("x", "y", "z"),
+        )
+        return self.with_part(part)
+
+    def with_springs(
+        self,
+        nodes: npt.ArrayLike,
+        stiffness: Mapping[str, float] | None = None,
+        damping: Mapping[str, float] | None = None,
+        *,
+        name: str = "springs",
+    ) -> Model:
+        """Append springs and dashpots between pairs of nodes, by component: ``{"z": 1.6e6}``."""
+        k, c = dict(stiffness or {}), dict(damping or {})
+        components = tuple(part for part in COMPONENTS if part in k or part in c)
+        component_indices(tuple({*k, *c}))
+        for table, what in ((k, "stiffness"), (c, "damping")):
+            for component, value in table.items():
+                require_positive(value, f"{what} {component}", zero=True)
+        pairs = _pairs(nodes)
+        shape = (len(pairs), len(components))
+        springs = np.broadcast_to([k.get(component, 0.0) for component in components], shape)
+        dashpots = np.broadcast_to([c.get(component, 0.0) for component in components], shape)
+        return self.with_part(SpringPart(name, pairs, springs, dashpots, components))
+
+    def with_mass(
+        self,
+        node: int | str,
+        mass: float,
+        inertia: Mapping[str, float] | None = None,
+        *,
+        directions: Sequence[str] | None = None,
+        name: str = "mass",
+    ) -> Model:
+        """Append a point mass [kg] with rotary inertia by component [kg m^2]: ``{"ry": 2e6}``.
+
+        The mass moves in all directions of the model unless ``directions`` names some of them.
+        """
+        moments = dict(inertia or {})
+        require_positive(mass, "mass", zero=True)
+        for component, value in moments.items():
+            require_positive(value, f"inertia {component}", zero=True)
+        translations = tuple(directions or (("x", "z") if self.plane else ("x", "y", "z")))
+        components = (*translations, *(part for part in COMPONENTS[3:] if part in moments))
+        values = [[mass] * len(translations) + [moments[part] for part in components[len(translations) :]]]
+        return self.with_part(MassPart(name, np.array([[self.node(node)]]), np.array(values), components))
+
+    # --- ties, supports, loads, damping ---------------------------------------------------------
+
+    def with_tie(
+        self, slave: tuple[int | str, str], masters: Sequence[tuple[int | str, str, float]]
+    ) -> Model:
+        """Append a tie: the slave d.o.f. (node, component) = Σ coefficient · (node, component)."""
+        resolved = tuple((self.node(node), component, float(factor)) for node, component, factor in masters)
+        component_indices((slave[1], *(component for _, component, _ in resolved)))
+        return replace(self, ties=(*self.ties, Tie((self.node(slave[0]), slave[1]), resolved)))
+
+    def with_rigid_link(
+        self, master: int | str, slaves: Sequence[int | str], components: Sequence[str] | None = None
+    ) -> Model:
+        """Bind nodes to a master node as one rigid body (small rotations): u + θ × arm."""
+        chosen = tuple(components or (_PLANE if self.plane else COMPONENTS))
+        model, head = self, self.node(master)
+        for reference in slaves:
+            tail = self.node(reference)
+            x, y, z = self.points[tail] - self.points[head]
+            lever = {
+                "x": (("ry", z), ("rz", -y)),
+                "y": (("rx", -z), ("rz", x)),
+                "z": (("rx", y), ("ry", -x)),
+            }
+            for component in chosen:
+                terms = [(head, component, 1.0)]
+                terms += [(head, rotation, arm) for rotation, arm in lever.get(component, ()) if arm != 0.0]
+                model = model.with_tie((tail, component), terms)
+        return model
+
+    def with_support(
+        self,
+        node: int | str,
+        fixed: Sequence[str] = (),
+        *,
+        stiffness: Mapping[str, float] | None = None,
+        damping: Mapping[str, float] | None = None,
+        motion: Mapping[str, Motion] | None = None,
+        name: str | None = None,
+    ) -> Model:
+        """Support a node: components that are fixed, on springs and dashpots to the ground, or moved.
+
+        Elastic components stand on a ground node of their own, so that their reactions are reported
+        too; a motion of an elastic component moves that ground.
+        """
+        index, label = self.node(node), name or self.node_label(self.node(node))
+        moved, elastic = dict(motion or {}), {*(stiffness or {}), *(damping or {})}
+        component_indices((*fixed, *moved, *elastic))
+        model, ground = self, index
+        if elastic:
+            model = model.with_nodes(self.points[index][None], [f"{label}:ground"])
+            ground = len(model.points) - 1
+            model = model.with_springs([[ground, index]], stiffness, damping, name=f"support {label}")
+        entries = [
+            Support(
+                f"{label}.{part}", ground if part in elastic else index, part, moved.get(part, Constant(0.0))
+            )
+            for part in COMPONENTS
+            if part in {*fixed, *moved, *elastic}
+        ]
+        taken = {(support.node, support.component) for support in model.supports}
+        for entry in entries:
+            if (entry.node, entry.component) in taken:
+                raise InputError("is supported twice", field="support", value=entry.name)
+        return replace(model, supports=(*model.supports, *entries))
+
+    def with_load(
+        self,
+        node: int | str,
+        component: str,
+        amount: float,
+        history: Callable[[FloatArray], FloatArray] | None = None,
+    ) -> Model:
+        """Append a force [N] or moment [N m] at a node."""
+        component_indices((component,))
+        return replace(
+            self, loads=(*self.loads, NodalLoad(self.node(node), component, float(amount), history))
+        )
+
+    def with_damping(self, damping: Damping | None) -> Model:
+        """Return the same model with another damping."""
+        return replace(self, damping=damping)
+
+
+def _pairs(nodes: npt.ArrayLike) -> IntArray:
+    pairs = np.asarray(nodes, dtype=np.int64).reshape(-1, 2)
+    if np.any(pairs[:, 0] == pairs[:, 1]):
+        raise InputError(
+            "must join two different nodes",
+            field="element",
+            value=int(pairs[pairs[:, 0] == pairs[:, 1]][0, 0]),
+        )
+    return pairs

@@ -1,0 +1,96 @@
+"""The case file: what is crossed by what, how, and what is wanted of it. Values are in SI units, and frozen."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Self
+
+from pydantic import Field, model_validator
+
+from axlespan.errors import InputError
+from axlespan.study.case_analysis import Analysis, Output
+from axlespan.study.case_crossing import Crossing
+from axlespan.study.case_structure import ContinuousBeam, SimpleSpan, Structure
+from axlespan.study.case_train import Entry, check_order
+from axlespan.study.checks import Part
+from axlespan.study.faults import InputErrors
+from axlespan.study.quantities import Text
+from axlespan.units import LENGTH, TIME, show
+
+
+class Case(Part):
+    """A case: a train crosses a structure.
+
+    Build one from a file with :func:`axlespan.study.load_case`, or from a mapping with ``Case.model_validate``.
+    """
+
+    title: Text = ""
+    """What this case is."""
+    structure: Structure
+    """What is crossed."""
+    train: Annotated[tuple[Entry, ...], Field(examples=["[{vehicle: ice3, count: 8}]"])]
+    """What crosses it: entries of equal vehicles, from the head of the train."""
+    crossing: Annotated[Crossing, Field(examples=["{speed: 80 km/h}"])]
+    """How it moves, on what surface."""
+    analysis: Annotated[Analysis, Field(examples=["{time_step: 1 ms, steps: 14000}"])]
+    """Time integration."""
+    output: Output = Output()
+    """What is recorded."""
+
+    @model_validator(mode="after")
+    def _fits_together(self) -> Self:
+        faults = [*_empty_train(self), *_sensors_off(self), *_fields_late(self)]
+        try:
+            check_order(self.train)
+        except InputErrors as errors:
+            faults += [InputError(e.rule, field=f"train.{e.field}", fix=e.fix) for e in errors.errors]
+        if faults:
+            raise InputErrors(faults)
+        return self
+
+
+def _empty_train(case: Case) -> list[InputError]:
+    if case.train:
+        return []
+    return [InputError("has no vehicle", field="train", fix="Write train: [{vehicle: ice3, count: 8}]")]
+
+
+def _sensors_off(case: Case) -> list[InputError]:
+    """Find sensors that are not on a beam."""
+    beam = case.structure
+    if not isinstance(beam, (SimpleSpan, ContinuousBeam)):
+        return []
+    faults = []
+    for name, at in case.output.sensors.items():
+        if isinstance(at, str):
+            rule = "must be a position along the beam; it has no named nodes"
+            faults.append(
+                InputError(rule, field=f"output.sensors.{name}", fix="Write a length, such as 12.5 m")
+            )
+        elif not -1e-9 * beam.length <= at <= (1.0 + 1e-9) * beam.length:
+            rule = f"must lie on the beam, from 0 to {show(beam.length, LENGTH, 6)}"
+            faults.append(InputError(rule, field=f"output.sensors.{name}"))
+    return faults
+
+
+def _fields_late(case: Case) -> list[InputError]:
+    """Find fields that are wanted after the end."""
+    end = case.analysis.step_count * case.analysis.time_step
+    wanted = case.output.fields
+    if not isinstance(wanted, tuple):
+        return []
+    return [
+        InputError(
+            f"must be within the time that is simulated, {show(end, TIME)}", field=f"output.fields.{number}"
+        )
+        for number, time in enumerate(wanted)
+        if time > end * (1.0 + 1e-9)
+    ]
+
+
+def schema() -> dict[str, Any]:
+    """Return the JSON Schema (draft 2020-12) of the case file; descriptions name the units."""
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "axlespan case",
+        **{key: value for key, value in Case.model_json_schema().items() if key != "title"},
+    }

@@ -1,0 +1,174 @@
+"""Analysis and output: what is accepted stands at the top."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Final, Literal, Self
+
+from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, model_validator
+
+from axlespan.errors import InputError
+from axlespan.study.checks import Location, Measured, OneOf, Part, Several
+from axlespan.study.kinds import LIST, MAPPING, Kinds, list_or_mapping, tag
+from axlespan.study.quantities import Count, Duration, Factor, Flag, Footprint, Gravity, Stiffness, Text
+from axlespan.units import HERTZ_STIFFNESS, RATIO, TIME
+
+METHODS: Final = ("direct", "iterative", "refactored")
+BASES: Final = ("full", "reduced")
+CONTACTS: Final = ("rigid", "unilateral", "hertz", "linear-spring")
+SOLVERS: Final = ("auto", "banded", "superlu", "pardiso", "cholmod")
+AUTO: Final = "auto"
+
+
+class RigidContact(Part):
+    """Wheels that never leave the surface; the contact force may pull."""
+
+    kind: Literal["rigid"]
+
+
+class UnilateralContact(Part):
+    """Wheels that lift off where the contact force would pull."""
+
+    kind: Literal["unilateral"]
+
+
+class HertzContact(Part):
+    """A Hertz spring between wheel and surface: force = stiffness times approach to the power 1.5."""
+
+    kind: Literal["hertz"]
+    stiffness: Annotated[float, Measured(HERTZ_STIFFNESS, above=0.0)] | None = None
+    """Stiffness; that of a worn wheel of 0.46 m radius on a rail when left out."""
+
+
+class LinearSpringContact(Part):
+    """A linear spring between wheel and surface."""
+
+    kind: Literal["linear-spring"]
+    stiffness: Annotated[Stiffness, Field(examples=["1.4 GN/m"])]
+    """Stiffness."""
+
+
+_CONTACTS = Kinds("contact", CONTACTS, words_alone=CONTACTS)
+Contact = Annotated[
+    Annotated[RigidContact, tag("rigid")]
+    | Annotated[UnilateralContact, tag("unilateral")]
+    | Annotated[HertzContact, tag("hertz")]
+    | Annotated[LinearSpringContact, tag("linear-spring")],
+    _CONTACTS.discriminator(),
+    BeforeValidator(_CONTACTS.checked),
+]
+
+
+def _read_footprint(raw: Any) -> Any:
+    if isinstance(raw, str) and raw.strip().isalpha() and raw != AUTO:
+        raise InputError("must be a length, or auto", value=raw, fix="Write auto, or a length such as 300 mm")
+    return raw
+
+
+def _either_end(schema: dict[str, Any]) -> None:
+    schema["oneOf"] = [{"required": ["steps"]}, {"required": ["duration"]}]
+
+
+class Analysis(Part):
+    """Time integration by the alpha method, and how contact is treated."""
+
+    model_config = ConfigDict(json_schema_extra=_either_end)
+
+    time_step: Duration
+    """Time step."""
+    steps: Annotated[Count | None, Field(examples=["14000"])] = None
+    """Number of time steps."""
+    duration: Duration | None = None
+    """Time that is simulated, in place of steps; rounded up to whole steps."""
+    alpha: Annotated[float, Measured(RATIO, at_least=-1.0 / 3.0, at_most=0.0)] = 0.0
+    """Numerical damping, N12 (1): 0 is none, -1/3 the most; wheels with mass need some, such as -0.1."""
+    beta: Annotated[float, Measured(RATIO, above=0.0, at_most=1.0)] | None = None
+    """Parameter of N12 (17); (1 - alpha)^2 / 4 when left out."""
+    gamma: Annotated[float, Measured(RATIO, above=0.0, at_most=2.0)] | None = None
+    """Parameter of N12 (16); 1/2 - alpha when left out."""
+    method: Annotated[str, OneOf(METHODS)] = "direct"
+    """How structure and vehicles are solved together."""
+    basis: Annotated[str, OneOf(BASES)] = "full"
+    """All d.o.f. of the structure, or a reduced basis of modes."""
+    modes: Count | None = None
+    """Number of modes of a reduced basis."""
+    contact: Contact = RigidContact(kind="rigid")
+    """Contact of wheel and surface."""
+    footprint: Annotated[
+        Annotated[Literal["auto"], tag("word")] | Annotated[Footprint, tag("length")],
+        Discriminator(lambda raw: "<word>" if raw == AUTO else "<length>"),
+        BeforeValidator(_read_footprint),
+    ] = AUTO
+    """Length over which a wheel spreads its force; 0 for a point."""
+    tolerance: Factor | None = None
+    """Of the iterative method: change of the contact forces, relative to the largest, at which it stops."""
+    relaxation: Annotated[float, Measured(RATIO, above=0.0, at_most=1.0)] | None = None
+    """Of the iterative method: share of the new contact forces that is taken over."""
+    max_iterations: Count | None = None
+    """Of the iterative method."""
+    solver: Annotated[str, OneOf(SOLVERS)] = "auto"
+    """Solver of the linear systems."""
+    gravity: Gravity = 9.81
+    """Acceleration of gravity, positive."""
+
+    @property
+    def step_count(self) -> int:
+        """Number of time steps."""
+        if self.steps is not None:
+            return self.steps
+        return max(1, math.ceil((self.duration or 0.0) / self.time_step * (1.0 - 1e-12)))
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        if self.steps is None and self.duration is None:
+            raise InputError("is missing", field="steps", fix="Add steps: 14000, or duration: 14 s")
+        if self.steps is not None and self.duration is not None:
+            raise InputError("says again what steps say", field="duration", fix="Keep one of the two")
+        if self.step_count > 10**9:
+            raise InputError(
+                f"takes {self.step_count:.0e} steps", field="duration", fix="Use a longer time step"
+            )
+        for name, key, wanted in (
+            ("tolerance", "method", "iterative"),
+            ("relaxation", "method", "iterative"),
+            ("max_iterations", "method", "iterative"),
+            ("modes", "basis", "reduced"),
+        ):
+            if getattr(self, name) is not None and getattr(self, key) != wanted:
+                raise InputError(
+                    f"is only for {key}: {wanted}", field=name, fix=f"Write {key}: {wanted}, or leave it out"
+                )
+        return self
+
+
+class EveryFew(Part):
+    """Whole fields at every so many steps."""
+
+    every: Annotated[Count, Field(examples=["100"])]
+    """Steps from one field to the next."""
+
+
+class Output(Part):
+    """What is recorded."""
+
+    sensors: Annotated[
+        dict[Text, Annotated[float | str, Location()]], Field(examples=["{midspan: 12.5 m}"])
+    ] = {}  # noqa: RUF012
+    """Places on the structure by their names: a position along it, or the name of a node of a mesh."""
+    every: Count = 1
+    """Steps from one record to the next."""
+    reactions: Flag = True
+    """Whether support reactions are recorded."""
+    fields: (
+        Annotated[
+            Annotated[
+                tuple[float, ...],
+                Several(Measured(TIME, at_least=0.0), "[0.5 s, 1 s]", increasing=True),
+                LIST,
+            ]
+            | Annotated[EveryFew, MAPPING],
+            Discriminator(list_or_mapping),
+        ]
+        | None
+    ) = None
+    """Whole displacement fields, at a list of times or at every so many steps."""

@@ -1,0 +1,186 @@
+"""Structures: beams that are described in the case file itself."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Self
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from axlespan.errors import InputError
+from axlespan.study.case_damping import StructuralDamping
+from axlespan.study.case_imported import MatricesStructure, MeshStructure
+from axlespan.study.case_support import Support
+from axlespan.study.checks import Part
+from axlespan.study.faults import InputErrors
+from axlespan.study.kinds import Kinds, tag
+from axlespan.study.quantities import (
+    Area,
+    Count,
+    MassPerLength,
+    Modulus,
+    PoissonRatio,
+    SecondMoment,
+    SpanLength,
+)
+from axlespan.units import LENGTH, show
+
+_REQUIRED_OF_SPANS = ("youngs_modulus", "second_moment", "mass_per_length", "elements")
+_EXAMPLES = {
+    "youngs_modulus": "34 GPa",
+    "second_moment": "2.90 m^4",
+    "mass_per_length": "12 t/m",
+    "elements": "20",
+}
+
+
+class SimpleSpan(Part):
+    """A beam on two supports; ``supports`` replaces them where it is given."""
+
+    kind: Literal["simple-span"]
+    length: SpanLength
+    """Span."""
+    youngs_modulus: Annotated[Modulus, Field(examples=["34 GPa"])]
+    """Young's modulus."""
+    second_moment: SecondMoment
+    """Second moment of area for bending in the vertical plane."""
+    mass_per_length: MassPerLength
+    """Mass of the beam and all that it carries for good."""
+    elements: Annotated[Count, Field(examples=["20"])]
+    """Number of beam elements."""
+    damping: StructuralDamping | None = None
+    """Structural damping; none when left out."""
+    area: Area | None = None
+    """Area of the cross-section, for axial stiffness and with ``mass_per_length`` for rotary inertia."""
+    shear_area: Area | None = None
+    """Shear area: makes it a Timoshenko beam; needs ``poisson_ratio``."""
+    poisson_ratio: PoissonRatio | None = None
+    """Poisson's ratio, for the shear modulus."""
+    supports: tuple[Support, ...] | None = None
+    """Supports in place of the two at the ends."""
+
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        _check_shear(self)
+        _check_supports(self.supports, self.length)
+        return self
+
+
+class BeamProperties(Part):
+    """What a span of a continuous beam is made of; each may stand in the span or in the structure."""
+
+    youngs_modulus: Modulus | None = None
+    """Young's modulus."""
+    second_moment: SecondMoment | None = None
+    """Second moment of area for bending in the vertical plane."""
+    mass_per_length: MassPerLength | None = None
+    """Mass of the beam and all that it carries for good."""
+    elements: Count | None = None
+    """Number of beam elements of a span."""
+    area: Area | None = None
+    """Area of the cross-section."""
+    shear_area: Area | None = None
+    """Shear area: makes it a Timoshenko beam; needs ``poisson_ratio``."""
+    poisson_ratio: PoissonRatio | None = None
+    """Poisson's ratio, for the shear modulus."""
+
+
+class Span(BeamProperties):
+    """One span of a continuous beam; what it does not say, the structure says for all spans."""
+
+    length: SpanLength
+    """Distance between the supports of the span."""
+
+
+class ContinuousBeam(BeamProperties):
+    """A beam over several spans, supported at the ends of each; ``supports`` replaces them where it is given.
+
+    Once validated, each span holds all of its properties.
+    """
+
+    kind: Literal["continuous-beam"]
+    spans: Annotated[tuple[Span, ...], Field(examples=["[{length: 20 m}, {length: 25 m}]"])]
+    """The spans, in the direction of travel."""
+    damping: StructuralDamping | None = None
+    """Structural damping; none when left out."""
+    supports: tuple[Support, ...] | None = None
+    """Supports in place of those at the ends of the spans."""
+
+    @property
+    def length(self) -> float:
+        """Length of all spans [m]."""
+        return sum(span.length for span in self.spans)
+
+    @model_validator(mode="after")
+    def _complete(self) -> Self:
+        if not self.spans:
+            raise InputError(
+                "must have at least one span", field="spans", fix="Write spans: [{length: 20 m}]"
+            )
+        common = {name: getattr(self, name) for name in BeamProperties.model_fields}
+        spans = tuple(
+            span.model_copy(
+                update={name: value for name, value in common.items() if getattr(span, name) is None}
+            )
+            for span in self.spans
+        )
+        missing = [
+            InputError(
+                "is missing: neither the span nor the structure gives it",
+                field=f"spans.{number}.{name}",
+                fix=f"Add {name}: {_EXAMPLES[name]} to the span, or to the structure for all spans",
+            )
+            for number, span in enumerate(spans)
+            for name in _REQUIRED_OF_SPANS
+            if getattr(span, name) is None
+        ]
+        if missing:
+            raise InputErrors(missing)
+        for number, span in enumerate(spans):
+            _check_shear(span, f"spans.{number}.")
+        _check_supports(self.supports, self.length)
+        return self.model_copy(update={"spans": spans})
+
+
+def _check_shear(beam: SimpleSpan | Span, prefix: str = "") -> None:
+    if beam.shear_area is not None and beam.poisson_ratio is None:
+        raise InputError(
+            "is missing: shear_area needs it for the shear modulus",
+            field=f"{prefix}poisson_ratio",
+            fix="Add poisson_ratio: 0.2",
+        )
+
+
+def _check_supports(supports: tuple[Support, ...] | None, length: float) -> None:
+    """Require positions on the beam, all different."""
+    faults, seen = [], dict[float, int]()
+    for number, support in enumerate(supports or ()):
+        at, field = support.at, f"supports.{number}.at"
+        if isinstance(at, str):
+            rule = "must be a position along the beam; it has no named nodes"
+            faults.append(InputError(rule, field=field, fix="Write a length, such as 25 m"))
+        elif not -1e-9 * length <= at <= (1.0 + 1e-9) * length:
+            faults.append(
+                InputError(f"must lie on the beam, from 0 to {show(length, LENGTH, 6)}", field=field)
+            )
+        elif at in seen:
+            rule = f"has a support already, supports.{seen[at]}"
+            faults.append(InputError(rule, field=field, fix="Put all directions into one of them"))
+        else:
+            seen[at] = number
+    if supports is not None and not supports:
+        faults.append(
+            InputError("holds nothing", field="supports", fix="Add [{at: 0 m, fixed: [x, z]}, ...]")
+        )
+    if faults:
+        raise InputErrors(faults)
+
+
+KINDS = Kinds("structure", ("simple-span", "continuous-beam", "mesh", "matrices"))
+Structure = Annotated[
+    Annotated[SimpleSpan, tag("simple-span")]
+    | Annotated[ContinuousBeam, tag("continuous-beam")]
+    | Annotated[MeshStructure, tag("mesh")]
+    | Annotated[MatricesStructure, tag("matrices")],
+    KINDS.discriminator(),
+    BeforeValidator(KINDS.checked),
+]

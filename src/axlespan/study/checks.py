@@ -1,0 +1,323 @@
+"""Checks of single values in a case file: quantities, whole numbers, choices, texts, positions, tables."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema, core_schema
+
+from axlespan import units
+from axlespan.errors import InputError
+from axlespan.study.faults import InputErrors, listed, nearest
+from axlespan.units import Dimension
+
+_INFINITY: Final = float("inf")
+
+
+class Part(BaseModel):
+    """A mapping of the case file: its keys are fixed, its values frozen and in SI units."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    def given(self) -> dict[str, Any]:
+        """Return the values that are not ``None``, by their names."""
+        return {name: value for name, value in self if value is not None}
+
+
+class _Checked:
+    """A check of one value, in the form that pydantic takes: the validator is ``read``."""
+
+    def read(self, raw: Any) -> Any:
+        raise NotImplementedError
+
+    def json_schema(self) -> dict[str, Any]:
+        raise NotImplementedError
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.read)
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        return self.json_schema()
+
+
+@dataclass(frozen=True)
+class Measured(_Checked):
+    """A quantity: a number in SI units, or a number and its unit.
+
+    Parameters
+    ----------
+    dimension : Dimension
+        What it measures.
+    above, at_least, below, at_most : float
+        Bounds in SI units.
+    believable : (float, float), optional
+        Where such a quantity lies in practice [SI], whatever its sign. A plain number outside is refused, for it
+        was probably meant in another unit; a number with a unit is taken.
+    """
+
+    dimension: Dimension
+    above: float = -_INFINITY
+    at_least: float = -_INFINITY
+    below: float = _INFINITY
+    at_most: float = _INFINITY
+    believable: tuple[float, float] | None = None
+
+    def read(self, raw: Any) -> float:
+        """Return the value in SI units."""
+        value = units.parse(raw, self.dimension)
+        if not (self.above < value < self.below and self.at_least <= value <= self.at_most):
+            raise InputError(self._rule(), value=raw, fix=self._remedy(value))
+        if not self.is_believable(value) and not _has_unit(raw):
+            raise InputError(
+                f"is taken as {self.plainly(value)} without a unit, and that looks wrong",
+                value=raw,
+                fix=self._intended(value),
+            )
+        return value
+
+    def is_believable(self, value: float) -> bool:
+        """Whether a value [SI] has a usual magnitude; zero has."""
+        if self.believable is None or value == 0.0:
+            return True
+        return self.believable[0] <= abs(value) <= self.believable[1]
+
+    def json_schema(self) -> dict[str, Any]:
+        """Return the JSON Schema: a number, or a text with a unit."""
+        unit = f"In {self.dimension.unit}." if self.dimension.unit else "A ratio."
+        number: dict[str, Any] = {"type": "number", "description": unit}
+        for keyword, bound in (
+            ("exclusiveMinimum", self.above),
+            ("minimum", self.at_least),
+            ("exclusiveMaximum", self.below),
+            ("maximum", self.at_most),
+        ):
+            if abs(bound) != _INFINITY:
+                number[keyword] = bound
+        text = {"type": "string", "pattern": r"^\s*[+\-−]?(\d|\.\d)"}
+        return {"anyOf": [number, {**text, "description": f"With its unit: '{self.dimension.example}'."}]}
+
+    def plainly(self, value: float) -> str:
+        return f"{value:.6g} {self.dimension.unit}".strip()
+
+    def _rule(self) -> str:
+        if self.above == 0.0 and self.below == _INFINITY == self.at_most:
+            return "must be positive"
+        if self.at_least == 0.0 and self.below == _INFINITY == self.at_most:
+            return "must not be negative"
+        bounds = (
+            ("above", self.above),
+            ("at least", self.at_least),
+            ("below", self.below),
+            ("at most", self.at_most),
+        )
+        told = [f"{word} {self.plainly(bound)}" for word, bound in bounds if abs(bound) != _INFINITY]
+        return f"must be {' and '.join(told)}"
+
+    def _remedy(self, value: float) -> str | None:
+        if self.dimension is units.RATIO and 1.0 <= value <= 100.0 and self.below <= 1.0:
+            return f"Write {value:g} % if percent are meant"
+        example = self.dimension.example
+        return f"Write it as in {example}" if self.dimension.unit and self.above == 0.0 else None
+
+    def _intended(self, value: float) -> str:
+        """Say which unit makes the number believable."""
+        as_it_is = self.plainly(value)
+        for unit in self.dimension.shown + _ALSO_WRITTEN.get(self.dimension.unit, ()):
+            if self.is_believable(value * units.factor(unit, self.dimension)):
+                return f"Write {value:.6g} {unit}; or {as_it_is}, if that is meant"
+        return f"Write {as_it_is}, if that is meant"
+
+
+_ALSO_WRITTEN: Final = {"m/s": ("km/h",), "Pa": ("N/mm^2",), "m^2": ("mm^2",), "kg": ("t",)}
+
+
+def _has_unit(raw: Any) -> bool:
+    return isinstance(raw, str) and bool(units.read(raw).unit)
+
+
+@dataclass(frozen=True)
+class Whole(_Checked):
+    """A whole number."""
+
+    at_least: int = 1
+    at_most: int = 10**9
+
+    def read(self, raw: Any) -> int:
+        """Return the number."""
+        if isinstance(raw, bool) or not isinstance(raw, (int, float)) or raw != raw or raw % 1 != 0:
+            raise InputError(
+                "must be a whole number", value=raw, fix="Write it without unit and quotes, as in 50"
+            )
+        if not self.at_least <= raw <= self.at_most:
+            raise InputError(f"must be a whole number from {self.at_least} to {self.at_most:.0e}", value=raw)
+        return int(raw)
+
+    def json_schema(self) -> dict[str, Any]:
+        """Return the JSON Schema."""
+        return {"type": "integer", "minimum": self.at_least, "maximum": self.at_most}
+
+
+@dataclass(frozen=True)
+class OneOf(_Checked):
+    """One word of a few."""
+
+    words: tuple[str, ...]
+
+    def read(self, raw: Any) -> str:
+        """Return the word."""
+        if isinstance(raw, str) and raw in self.words:
+            return raw
+        near = nearest(raw, self.words) if isinstance(raw, str) else None
+        fix = f"Did you mean {near}?" if near else None
+        raise InputError(f"must be {listed(self.words)}", value=raw, fix=fix)
+
+    def json_schema(self) -> dict[str, Any]:
+        """Return the JSON Schema."""
+        return {"enum": list(self.words)}
+
+
+@dataclass(frozen=True)
+class Word(_Checked):
+    """A text that is not empty; with ``strict`` a name of letters, digits, - and _, as d.o.f. names need it."""
+
+    strict: bool = False
+
+    def read(self, raw: Any) -> str:
+        """Return the text; a number is taken as its digits."""
+        if isinstance(raw, bool) or not isinstance(raw, (str, int, float)) or not str(raw).strip():
+            raise InputError("must be a text", value=raw, fix="Put it in quotes")
+        text = str(raw).strip()
+        if self.strict and not re.fullmatch(r"[A-Za-z0-9_-]+", text):
+            clean = re.sub(r"[^A-Za-z0-9_-]+", "_", text).strip("_") or "body"
+            raise InputError("must be a name of letters, digits, - and _", value=raw, fix=f"Write {clean}")
+        return text
+
+    def json_schema(self) -> dict[str, Any]:
+        """Return the JSON Schema."""
+        pattern: dict[str, Any] = {"pattern": "^[A-Za-z0-9_-]+$"} if self.strict else {"minLength": 1}
+        return {"type": ["string", "number"], **pattern}
+
+
+@dataclass(frozen=True)
+class Location(_Checked):
+    """A position along the running line [m], or the name of a node."""
+
+    def read(self, raw: Any) -> float | str:
+        """Return the position in meters, or the name."""
+        if isinstance(raw, str) and re.match(r"\s*[A-Za-z_]", raw):
+            return raw.strip()
+        return units.parse(raw, units.LENGTH)
+
+    def json_schema(self) -> dict[str, Any]:
+        """Return the JSON Schema."""
+        return {
+            "type": ["number", "string"],
+            "description": "Position along the running line, in m when a plain number; or the name of a node.",
+        }
+
+
+@dataclass(frozen=True)
+class Table(_Checked):
+    """Pairs of two quantities, the first of them increasing: ``[[0 s, 10 m/s], [5 s, 20 m/s]]``."""
+
+    first: Measured
+    second: Measured
+    at_least: int = 2
+
+    def read(self, raw: Any) -> tuple[tuple[float, float], ...]:
+        """Return the pairs in SI units."""
+        example = f"[[0, {self.second.dimension.example}], [{self.first.dimension.example}, ...]]"
+        if not isinstance(raw, Sequence) or isinstance(raw, str):
+            raise InputError("must be a list of pairs", value=raw, fix=f"Write {example}")
+        if len(raw) < self.at_least:
+            raise InputError(f"must have at least {self.at_least} pairs", value=raw, fix=f"Write {example}")
+        pairs = [self._pair(pair, row) for row, pair in enumerate(raw)]
+        for row in range(1, len(pairs)):
+            if pairs[row][0] <= pairs[row - 1][0]:
+                raise InputError(
+                    f"must increase: the pair before has {self.first.plainly(pairs[row - 1][0])}",
+                    field=f"{row}.0",
+                    value=raw[row][0],
+                )
+        return tuple(pairs)
+
+    def _pair(self, raw: Any, row: int) -> tuple[float, float]:
+        if not isinstance(raw, Sequence) or isinstance(raw, str) or len(raw) != 2:
+            name = f"{self.first.dimension.name} and {self.second.dimension.name}"
+            raise InputError(f"must be a pair: {name}", field=f"{row}", value=raw)
+        values = []
+        for column, kind in enumerate((self.first, self.second)):
+            try:
+                values.append(kind.read(raw[column]))
+            except InputError as error:
+                raise InputError(
+                    error.rule, field=f"{row}.{column}", value=raw[column], fix=error.fix
+                ) from None
+        return values[0], values[1]
+
+    def json_schema(self) -> dict[str, Any]:
+        """Return the JSON Schema."""
+        pair = [self.first.json_schema(), self.second.json_schema()]
+        row = {"type": "array", "prefixItems": pair, "items": False, "minItems": 2}
+        return {"type": "array", "items": row, "minItems": self.at_least}
+
+
+@dataclass(frozen=True)
+class Several(_Checked):
+    """A list of quantities of one kind.
+
+    Parameters
+    ----------
+    item : Measured
+        What each of them is.
+    example : str
+        Such a list, for messages.
+    exactly : int, optional
+        How many there must be; at least one when left out.
+    increasing : bool
+        Whether each must be larger than the one before.
+    alone : bool
+        Whether one quantity without brackets is a list of one.
+    """
+
+    item: Measured
+    example: str
+    exactly: int | None = None
+    increasing: bool = False
+    alone: bool = False
+
+    def read(self, raw: Any) -> tuple[float, ...]:
+        """Return the values in SI units."""
+        if self.alone and not isinstance(raw, (list, tuple)):
+            return (self.item.read(raw),)
+        if not isinstance(raw, (list, tuple)):
+            raise InputError("must be a list", value=raw, fix=f"Write {self.example}")
+        values, faults = [], []
+        for number, one in enumerate(raw):
+            try:
+                values.append(self.item.read(one))
+            except InputError as error:
+                faults.append(InputError(error.rule, field=str(number), value=one, fix=error.fix))
+        if faults:
+            raise InputErrors(faults)
+        if (self.exactly is None and not values) or len(values) != (self.exactly or len(values)):
+            wanted = f"exactly {self.exactly} values" if self.exactly else "at least one value"
+            raise InputError(f"must have {wanted}, not {len(values)}", value=raw, fix=f"Write {self.example}")
+        for number in range(1, len(values) if self.increasing else 0):
+            if values[number] <= values[number - 1]:
+                rule = f"must increase: the value before is {self.item.plainly(values[number - 1])}"
+                raise InputError(rule, field=str(number), value=raw[number])
+        return tuple(values)
+
+    def json_schema(self) -> dict[str, Any]:
+        """Return the JSON Schema."""
+        items = {"type": "array", "items": self.item.json_schema(), "minItems": self.exactly or 1}
+        several = {**items, "maxItems": self.exactly} if self.exactly else items
+        return {"anyOf": [self.item.json_schema(), several]} if self.alone else several

@@ -1,0 +1,129 @@
+"""Mappings that come in several kinds, and the files that a case names."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from pydantic import Discriminator, GetCoreSchemaHandler, GetJsonSchemaHandler, Tag, ValidationInfo
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema, core_schema
+
+from axlespan.errors import InputError
+from axlespan.study.faults import listed, nearest
+
+_OPEN, _CLOSE = "<", ">"
+
+
+def tag(name: str) -> Tag:
+    """Return the mark of one kind in a union; it is told from a key of the file by its brackets."""
+    return Tag(f"{_OPEN}{name}{_CLOSE}")
+
+
+def is_tag(step: object) -> bool:
+    """Whether a step of an error's location is the mark of a kind, and no key of the file."""
+    return isinstance(step, str) and step.startswith(_OPEN) and step.endswith(_CLOSE)
+
+
+@dataclass(frozen=True)
+class Kinds:
+    """Says which kind a mapping is, by the word that stands under one key.
+
+    Parameters
+    ----------
+    what : str
+        What comes in kinds, for messages: ``"structure"``.
+    names : tuple of str
+        The kinds.
+    key : str
+        Where the word stands.
+    words_alone : tuple of str
+        Kinds that may be written as a word without mapping: ``irregularity: none``.
+    """
+
+    what: str
+    names: tuple[str, ...]
+    key: str = "kind"
+    words_alone: tuple[str, ...] = ()
+
+    def checked(self, raw: Any) -> Any:
+        """Return the mapping if its kind is known."""
+        if _kind_of(raw, self.key) in self.names and not isinstance(raw, Mapping):
+            return raw
+        if isinstance(raw, str) and raw in self.words_alone:
+            return {self.key: raw}
+        if not isinstance(raw, Mapping):
+            near = nearest(raw, self.names) if isinstance(raw, str) else None
+            alone = f"{listed(self.words_alone)}, or " if self.words_alone else ""
+            raise InputError(
+                f"must be {alone}a mapping with {self.key}",
+                value=raw,
+                fix=f"Write {{{self.key}: {near or self.names[-1]}, ...}}",
+            )
+        if self.key not in raw:
+            raise InputError(
+                f"is missing: it says which {self.what} this is",
+                field=self.key,
+                fix=f"Add {self.key}: {listed(self.names)}",
+            )
+        word = raw[self.key]
+        if word not in self.names:
+            near = nearest(word, self.names) if isinstance(word, str) else None
+            fix = f"Did you mean {near}? " if near else ""
+            raise InputError(
+                f"no such {self.what}", field=self.key, value=word, fix=f"{fix}Known are {listed(self.names)}"
+            )
+        return raw
+
+    def discriminator(self) -> Discriminator:
+        """Return what pydantic asks for the mark of a kind."""
+        return Discriminator(lambda raw: f"{_OPEN}{_kind_of(raw, self.key)}{_CLOSE}")
+
+
+def _kind_of(raw: Any, key: str) -> Any:
+    return raw.get(key) if isinstance(raw, Mapping) else getattr(raw, key, None)
+
+
+LIST: Final = tag("list")
+"""Mark of a list, where a list or a mapping may stand."""
+MAPPING: Final = tag("mapping")
+"""Mark of a mapping, where a list or a mapping may stand."""
+list_or_mapping: Final[Callable[[Any], str]] = lambda raw: (
+    MAPPING.tag if isinstance(raw, Mapping) or not isinstance(raw, (list, tuple)) else LIST.tag
+)
+
+
+class ExistingFile:
+    """A file that the case names, relative to the folder of the case file (validation context ``folder``)."""
+
+    def read(self, raw: Any, info: ValidationInfo) -> Path:
+        """Return the path of the file, which exists."""
+        if isinstance(raw, Path):
+            raw = str(raw)
+        if not isinstance(raw, str) or not raw.strip() or "\0" in raw:
+            raise InputError("must be the name of a file", value=raw)
+        folder = Path((info.context or {}).get("folder", "."))
+        path = folder / raw.strip()
+        try:
+            found = path.is_file()
+            others = [p.name for p in path.parent.iterdir()] if not found and path.parent.is_dir() else []
+        except OSError as error:
+            raise InputError(f"cannot be read: {error.strerror}", value=raw) from None
+        if found:
+            return path
+        if path.is_dir():
+            raise InputError("is a folder, not a file", value=raw)
+        near = nearest(path.name, others)
+        where = folder.resolve() if not path.is_absolute() else path.parent
+        fix = f"Did you mean {near}?" if near else f"Names are relative to the case file's folder, {where}"
+        raise InputError("no such file", value=raw, fix=fix)
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.with_info_plain_validator_function(self.read)
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        return {"type": "string", "description": "File, relative to the folder of the case file."}

@@ -1,0 +1,77 @@
+"""Types of the values in a case file, with the magnitudes that they have in practice."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Strict
+
+from axlespan.study.checks import Measured, Whole, Word
+from axlespan.units import (
+    ACCELERATION,
+    ANGLE,
+    AREA,
+    DAMPING,
+    DENSITY,
+    FORCE,
+    FREQUENCY,
+    INERTIA,
+    LENGTH,
+    MASS,
+    MASS_PER_LENGTH,
+    PER_TIME,
+    PRESSURE,
+    RATIO,
+    ROTATIONAL_DAMPING,
+    ROTATIONAL_STIFFNESS,
+    SECOND_MOMENT,
+    SPEED,
+    STIFFNESS,
+    TIME,
+)
+
+# What a plain number must lie between: wide enough for laboratory models and the longest bridges, narrow enough
+# to catch GPa taken for Pa, t for kg, mm for m, km/h for m/s and percent for ratios.
+DISTANCE = Measured(LENGTH, at_least=0.0, believable=(0.01, 1e4))
+SPACING = Measured(LENGTH, above=0.0, believable=(0.01, 1e3))
+UNEVENNESS = Measured(LENGTH, believable=(0.0, 0.2))
+TRAIN_SPEED = Measured(SPEED, at_least=0.0, believable=(0.01, 170.0))
+AXLE_LOAD = Measured(FORCE, above=0.0, believable=(1e3, 2e6))
+
+Distance = Annotated[float, DISTANCE]
+Spacing = Annotated[float, SPACING]
+Unevenness = Annotated[float, UNEVENNESS]
+Speed = Annotated[float, TRAIN_SPEED]
+Length = Annotated[float, Measured(LENGTH)]
+SpanLength = Annotated[float, Measured(LENGTH, above=0.0, believable=(0.05, 5e3))]
+Wavelength = Annotated[float, Measured(LENGTH, above=0.0, believable=(1e-3, 1e4))]
+Thickness = Annotated[float, Measured(LENGTH, above=0.0, believable=(1e-4, 20.0))]
+Footprint = Annotated[float, Measured(LENGTH, at_least=0.0, believable=(1e-3, 5.0))]
+Area = Annotated[float, Measured(AREA, above=0.0, believable=(1e-7, 1e3))]
+SecondMoment = Annotated[float, Measured(SECOND_MOMENT, above=0.0, believable=(1e-14, 1e5))]
+Modulus = Annotated[float, Measured(PRESSURE, above=0.0, believable=(1e6, 2e12))]
+PoissonRatio = Annotated[float, Measured(RATIO, above=-1.0, below=0.5)]
+Density = Annotated[float, Measured(DENSITY, above=0.0, believable=(20.0, 25e3))]
+MassPerLength = Annotated[float, Measured(MASS_PER_LENGTH, above=0.0, believable=(0.1, 1e6))]
+BodyMass = Annotated[float, Measured(MASS, above=0.0, believable=(100.0, 1e6))]
+PartMass = Annotated[float, Measured(MASS, at_least=0.0, believable=(5.0, 1e6))]
+Inertia = Annotated[float, Measured(INERTIA, above=0.0)]
+Stiffness = Annotated[float, Measured(STIFFNESS, above=0.0)]
+SpringStiffness = Annotated[float, Measured(STIFFNESS, at_least=0.0)]
+RotationalStiffness = Annotated[float, Measured(ROTATIONAL_STIFFNESS, above=0.0)]
+Dashpot = Annotated[float, Measured(DAMPING, at_least=0.0)]
+RotationalDashpot = Annotated[float, Measured(ROTATIONAL_DAMPING, at_least=0.0)]
+DampingRatio = Annotated[float, Measured(RATIO, at_least=0.0, below=1.0, believable=(1e-6, 0.3))]
+Frequency = Annotated[float, Measured(FREQUENCY, above=0.0)]
+Rate = Annotated[float, Measured(PER_TIME, at_least=0.0)]
+Duration = Annotated[float, Measured(TIME, above=0.0)]
+Delay = Annotated[float, Measured(TIME, at_least=0.0)]
+Angle = Annotated[float, Measured(ANGLE)]
+Gravity = Annotated[float, Measured(ACCELERATION, at_least=0.0)]
+Factor = Annotated[float, Measured(RATIO, above=0.0)]
+
+Count = Annotated[int, Whole()]
+Seed = Annotated[int, Whole(at_least=0, at_most=2**63 - 1)]
+Text = Annotated[str, Word()]
+Name = Annotated[str, Word(strict=True)]
+Flag = Annotated[bool, Strict()]

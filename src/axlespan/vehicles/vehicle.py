@@ -1,0 +1,145 @@
+"""A vehicle: a System with contact points, or just axle forces; positions are counted from its first wheel."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse as sp
+
+from axlespan.errors import InputError
+from axlespan.linalg.factor import NotPositiveDefinite, factorize
+from axlespan.model.system import System
+from axlespan.running.structure import MAIN_LINE
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+GRAVITY = 9.81  # [m/s^2]
+
+
+@dataclass(frozen=True)
+class ContactPoint:
+    """Where a vehicle touches the running line."""
+
+    name: str
+    behind: float  # distance behind the vehicle's first wheel [m]
+    dof: str | None = None  # d.o.f. of the vehicle; None: a force that moves along
+    line: str = MAIN_LINE  # name of the running line
+    force: float = 0.0  # [N] downward, of a moving force
+
+
+@dataclass(frozen=True, eq=False)
+class Vehicle:
+    """A vehicle, as a system with contact points.
+
+    Its displacements are counted from its static position on level ground. A vehicle without a
+    system is a group of moving forces.
+    """
+
+    contacts: tuple[ContactPoint, ...]
+    system: System | None = None
+    name: str = "vehicle"
+    length: float | None = None  # over buffers [m], for drawings and overlaps
+    facts: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if not self.contacts:
+            raise InputError("must have at least one wheel", field="vehicle", value=self.name)
+        if min(point.behind for point in self.contacts) != 0.0:
+            raise InputError("must have its first wheel at 0", field="vehicle", value=self.name)
+        names = [point.name for point in self.contacts]
+        if len(set(names)) < len(names):
+            raise InputError("must have different names for its wheels", field="vehicle", value=self.name)
+
+    @property
+    def is_force(self) -> bool:
+        """Whether it is just moving forces."""
+        return self.system is None
+
+    @cached_property
+    def contact_dofs(self) -> IntArray:
+        """Free d.o.f. (n_contact,) of the system at its contact points (set X of N12)."""
+        if self.system is None:
+            return np.empty(0, dtype=np.int64)
+        position = {int(full): i for i, full in enumerate(self.system.independent[self.system.free])}
+        result = []
+        for point in self.contacts:
+            full = self.system.dof(point.dof or "")
+            if full not in position:
+                raise InputError(
+                    "must be free and not tied to another", field="contact d.o.f.", value=point.dof
+                )
+            result.append(position[full])
+        if len(set(result)) < len(result):
+            raise InputError("must touch the line with different d.o.f.", field="vehicle", value=self.name)
+        return np.array(result, dtype=np.int64)
+
+    def static_forces(self, gravity: float = GRAVITY) -> FloatArray:
+        """Contact forces (n_contact,) [N] on level ground, positive in compression.
+
+        Raises
+        ------
+        InputError
+            If the vehicle is a mechanism on its wheels, or a wheel would have to pull.
+        """
+        if self.system is None:
+            return np.array([point.force for point in self.contacts])
+        blocks = self.system.partition
+        weight = self.system.weight(gravity)[self.system.free]
+        x = self.contact_dofs
+        rest = np.setdiff1d(np.arange(len(weight)), x)
+        stiffness = sp.csr_array(blocks.K_FF)
+        forces = -weight[x]
+        if len(rest):
+            inner = sp.csr_array(stiffness[rest][:, rest])
+            try:
+                u = factorize(inner).solve(weight[rest].copy())
+            except NotPositiveDefinite as error:
+                raise self._mechanism(rest[np.asarray(error.suspects)]) from error
+            forces = forces + stiffness[x][:, rest] @ u
+        if np.any(forces <= 0.0):
+            worst = int(np.argmin(forces))
+            raise InputError(
+                "must press on the line when it stands still on level ground",
+                field=f"wheel '{self.contacts[worst].name}' of vehicle '{self.name}'",
+                value=f"{forces[worst]:.6g} N",
+                fix="Check the masses and the positions of the bodies over the wheels",
+            )
+        return np.asarray(forces)
+
+    def _mechanism(self, dofs: IntArray) -> InputError:
+        assert self.system is not None
+        names = ", ".join(self.system.free_name(int(i)) for i in dofs[:6])
+        return InputError(
+            f"must stand on its wheels, but can move freely at {names}",
+            field="vehicle",
+            value=self.name,
+            fix="Add the springs that carry it, or remove the degree of freedom",
+        )
+
+    @cached_property
+    def has_massive_contacts(self) -> bool:
+        """Whether a contact point has mass of its own."""
+        if self.system is None:
+            return False
+        return bool(np.any(self.system.partition.M_FF.diagonal()[self.contact_dofs] > 0.0))
+
+    @cached_property
+    def has_dashpot_contacts(self) -> bool:
+        """Whether a dashpot ends at a contact point."""
+        if self.system is None:
+            return False
+        return bool(np.any(self.system.partition.C_FF.diagonal()[self.contact_dofs] != 0.0))
+
+    def as_axle_loads(self, gravity: float = GRAVITY) -> Vehicle:
+        """The same wheels as moving forces of their static loads."""
+        forces = self.static_forces(gravity)
+        points = tuple(
+            replace(point, dof=None, force=float(force))
+            for point, force in zip(self.contacts, forces, strict=True)
+        )
+        return Vehicle(points, None, f"{self.name} as axle loads", self.length, self.facts)
