@@ -142,7 +142,7 @@ def test_joint_flat_and_bumps_have_the_published_size():
     # A 50 mm flat on a wheel of 0.46 m radius: R - sqrt(R² - l²/4) = 0.680 mm deep
     flat = ir.WheelFlat(0.05, 0.46)
     assert flat.value(0.0) == pytest.approx(-(0.46 - np.sqrt(0.46**2 - 0.025**2)), rel=1e-3)
-    # Pivoting about the edge e = -l/2: the center drops by R - sqrt(R² - s²) at the distance s behind the edge.
+    # Pivoting about the edge -l/2: the center drops by R - sqrt(R² - s²) at the distance s behind it.
     s = np.linspace(0.0, 0.025, 9)
     np.testing.assert_allclose(flat.value(s - 0.025), -(0.46 - np.sqrt(0.46**2 - s**2)), atol=1e-6)
     np.testing.assert_allclose(flat.value(s + 7 * flat.circumference), flat.value(s), atol=1e-15)

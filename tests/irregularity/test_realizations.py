@@ -105,14 +105,25 @@ def test_same_seed_same_numbers():
     assert len(pickle.dumps(first)) < 3000  # the table isn't in it
 
 
-def test_numbers_don_t_move_between_versions():
-    # PCG64 with a seed sequence is stable; a change here changes every stored result.
-    profile = ir.realize("german-low", 500.0, seed=1, wavelengths=(3.0, 25.0))
-    expected = np.array(PINNED)
-    np.testing.assert_allclose(profile.value([0.0, 10.0, 250.0]), expected, rtol=1e-7)
-
-
-PINNED = [0.0, 0.0, 0.0]
+def test_numbers_follow_from_the_documented_rule():
+    # PCG64 phases, bins of 1/λmax / q with q the smallest count for length, four long waves and 128 terms.
+    shortest, longest, length = 3.0, 25.0, 500.0
+    low, high = 1.0 / longest, 1.0 / shortest
+    q = int(np.ceil(max(length / longest, 4, 128 * low / (high - low))))
+    step = low / q
+    count = int(np.floor((high - low) / step + 0.5))
+    edges = np.append(low + step * np.arange(count), high)
+    phases = np.random.Generator(np.random.PCG64(1)).uniform(0.0, 2.0 * np.pi, count)
+    x = np.array([0.0, 10.0, 250.0, -7.0])
+    r = np.zeros(4)
+    spectrum = ir.spectrum("german-low")
+    for i in range(count):
+        amplitude = np.sqrt(2.0) * spectrum.standard_deviation(1.0 / edges[i + 1], 1.0 / edges[i])
+        r += amplitude * np.cos(2.0 * np.pi * (low + (i + 0.5) * step) * x + phases[i])
+    profile = ir.realize("german-low", length, seed=1, wavelengths=(shortest, longest))
+    np.testing.assert_allclose(profile.value(x), r, atol=1e-11)
+    # A change of these numbers changes every stored result.
+    np.testing.assert_allclose(r[:3], [-0.45845986e-3, 0.91781155e-3, 0.09241667e-3], atol=1e-11)
 
 
 def test_a_million_points_take_less_than_five_seconds():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from axlespan.errors import InputError
 
 D1, D2, D3 = ir.EN13848_BANDS.values()
 
-# Standard deviations [mm] in the bands D1 3-25 m, D2 25-70 m, D3 70-150 m, from an independent integration of the
+# Standard deviations [mm] in D1 (3-25 m), D2 (25-70 m), D3 (70-150 m), from an independent integration of the
 # published formulas with the coefficients of the sources.
 SIGMA = {
     ("german-low", "vertical"): (0.984, 1.651, 2.122),
@@ -64,7 +65,7 @@ def test_variance_is_the_integral_of_the_density(name):
     t = [np.log(1.0 / high), *np.log(breaks), np.log(1.0 / low)]
     variance = sum(
         quad(lambda s: float(spectrum.psd(np.exp(s))) * np.exp(s), a, b, epsrel=1e-10, epsabs=0.0)[0]
-        for a, b in zip(t, t[1:], strict=False)
+        for a, b in pairwise(t)
     )
     # Jumps of the density at China's break points fall inside a panel.
     tolerance = 1e-5 if breaks else 1e-9

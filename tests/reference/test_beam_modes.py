@@ -33,9 +33,7 @@ def test_slopes_and_curvatures_are_the_derivatives():
 
 def test_frequencies_satisfy_the_beam_equation():
     waves, omega = BEAM.wave_numbers(4), BEAM.angular_frequencies(4)
-    np.testing.assert_allclose(
-        BEAM.bending_stiffness * waves**4, BEAM.mass_per_length * omega**2, rtol=1e-14
-    )
+    np.testing.assert_allclose(BEAM.bending_stiffness * waves**4, BEAM.mass_per_length * omega**2, rtol=1e-14)
 
 
 def test_a_response_sums_the_modes_at_points_of_any_shape():
@@ -51,7 +49,10 @@ def test_a_response_sums_the_modes_at_points_of_any_shape():
     np.testing.assert_allclose(response.slope_at(0.0), slope, atol=1e-14)
     # only the first mode bends at mid-span
     np.testing.assert_allclose(
-        response.moment_at(12.5), -BEAM.bending_stiffness * (np.pi / 25.0) ** 2 * q[:, 0], rtol=1e-9, atol=1e-5
+        response.moment_at(12.5),
+        -BEAM.bending_stiffness * (np.pi / 25.0) ** 2 * q[:, 0],
+        rtol=1e-9,
+        atol=1e-5,
     )
 
 

@@ -8,7 +8,11 @@ from axlespan.errors import InputError
 from axlespan.reference import SuspendedBody
 
 TIME = np.linspace(0.0, 2.0, 401)
-BODIES = [SuspendedBody(5750.0, 1.595e6), SuspendedBody(5750.0, 1.595e6, 20e3), SuspendedBody(2.0, 800.0, 60.0)]
+BODIES = [
+    SuspendedBody(5750.0, 1.595e6),
+    SuspendedBody(5750.0, 1.595e6, 20e3),
+    SuspendedBody(2.0, 800.0, 60.0),
+]
 
 
 def integrated(body, foot, foot_rate, breaks, start=(0.0, 0.0)):
@@ -43,7 +47,9 @@ def test_over_a_harmonic_foot(body, ratio):
     np.testing.assert_allclose(motion.velocity, z[1], atol=1e-8 * scale[1])
     push = body.stiffness * (1e-3 * np.sin(frequency * TIME) - z[0])
     push += body.damping * (1e-3 * frequency * np.cos(frequency * TIME) - z[1])
-    np.testing.assert_allclose(motion.acceleration, push / body.mass, atol=1e-7 * np.abs(push).max() / body.mass)
+    np.testing.assert_allclose(
+        motion.acceleration, push / body.mass, atol=1e-7 * np.abs(push).max() / body.mass
+    )
 
 
 @pytest.mark.parametrize("body", BODIES)
@@ -73,7 +79,9 @@ def test_steady_amplitude_is_the_transmissibility():
     frequency = 15.0
     late = np.linspace(4.0, 4.0 + 2 * np.pi / frequency, 2001)
     motion = body.over_harmonic(1e-3, frequency, late)
-    assert np.abs(motion.displacement).max() == pytest.approx(1e-3 * body.transmissibility(frequency), rel=1e-5)
+    assert np.abs(motion.displacement).max() == pytest.approx(
+        1e-3 * body.transmissibility(frequency), rel=1e-5
+    )
     # all curves pass through one at sqrt(2) times the natural frequency
     assert body.transmissibility(np.sqrt(2.0) * body.angular_frequency) == pytest.approx(1.0, rel=1e-12)
 

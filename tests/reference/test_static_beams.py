@@ -30,7 +30,11 @@ def hermite_deflection(at, supports, nodes):
         k[2 * e : 2 * e + 4, 2 * e : 2 * e + 4] += STIFFNESS / h**3 * block
     load = np.zeros(2 * n)
     load[2 * int(np.argmin(np.abs(nodes - at)))] = -FORCE
-    fixed = {"pinned-pinned": [0, 2 * n - 2], "fixed-fixed": [0, 1, 2 * n - 2, 2 * n - 1], "fixed-free": [0, 1]}
+    fixed = {
+        "pinned-pinned": [0, 2 * n - 2],
+        "fixed-fixed": [0, 1, 2 * n - 2, 2 * n - 1],
+        "fixed-free": [0, 1],
+    }
     free = np.setdiff1d(np.arange(2 * n), fixed[supports])
     u = np.zeros(2 * n)
     u[free] = np.linalg.solve(k[np.ix_(free, free)], load[free])
@@ -50,7 +54,11 @@ def test_point_load_equals_cubic_elements(supports, at):
 def test_point_load_equals_the_modal_series():
     beam = SimplySupportedBeam(LENGTH, STIFFNESS, 1.0)
     n, x, at = 20_000, np.array([1.0, 3.3, 5.0, 9.0]), 3.3
-    series = -FORCE * beam.shapes(x, n) @ (beam.shapes(at, n) / (beam.modal_mass * beam.angular_frequencies(n) ** 2))
+    series = (
+        -FORCE
+        * beam.shapes(x, n)
+        @ (beam.shapes(at, n) / (beam.modal_mass * beam.angular_frequencies(n) ** 2))
+    )
     w = point_load_deflection(x, force=FORCE, at=at, length=LENGTH, bending_stiffness=STIFFNESS)
     np.testing.assert_allclose(w, series, rtol=1e-9)  # the rest of the series falls like n^-3
 

@@ -69,7 +69,7 @@ class StructureBody:
     def path_force(self, local: IntArray, weights: FloatArray, forces: FloatArray) -> FloatArray:
         """Eᵀ X (n_path,) for wheels with rows (n_wheel, n_local) and forces (n_wheel,)."""
         loads = (weights * forces[:, None]).ravel()
-        return np.bincount(local.ravel(), loads, minlength=len(self.path_dofs))
+        return np.asarray(np.bincount(local.ravel(), loads, minlength=len(self.path_dofs)), dtype=np.float64)
 
     def predict(self, external: FloatArray, known_load: FloatArray | None = None) -> None:
         """Advance under the external force (n,) already weighted, the contact of the step before, and known wheel loads."""

@@ -69,7 +69,7 @@ def stretches(
 
 def _stretch(plan: Plan, steps: IntArray, structure: StructureBody, fleet: FleetBody | None) -> Stretch:
     """Rows and systems for consecutive time indices."""
-    times = steps * plan.settings.time_step
+    times = plan.times_of(steps)
     positions = plan.rows.positions(times)
     on = plan.rows.on_structure(positions)
     live = np.flatnonzero(on.any(axis=0))

@@ -22,35 +22,44 @@ class AppliedForces:
 
     vectors: FloatArray  # (n, n_term)
     histories: Sequence[History]  # (n_term,)
-    inertial: npt.NDArray[np.bool_]  # (n_term,) terms in ü_P, which act at the new time only
+    rate: npt.NDArray[np.int64]  # (n_term,) 0: loads and u_P; 1: u̇_P; 2: ü_P, which acts at the new time only
 
     @classmethod
     def of(cls, system: System) -> AppliedForces:
         """The terms of a system; none where a history is zero throughout."""
         vectors: list[FloatArray] = []
         histories: list[History] = []
-        inertial: list[bool] = []
+        rate: list[int] = []
         for load in system.loads:
             vectors.append(load.vector[system.free])
             histories.append(load.factor)
-            inertial.append(False)
+            rate.append(0)
         blocks = system.partition
         for j, motion in enumerate(system.motions):
             if isinstance(motion, Constant) and motion.amount == 0.0:
                 continue
-            terms: list[tuple[object, History, bool]] = [
-                (blocks.K_FP, motion.value, False),
-                (blocks.C_FP, motion.velocity, False),
-                (blocks.M_FP, motion.acceleration, True),
-            ]
-            for matrix, history, is_inertial in terms:
-                column = np.asarray(matrix[:, [j]].toarray())[:, 0]  # type: ignore[index]
+            terms = (
+                (blocks.K_FP, motion.value),
+                (blocks.C_FP, motion.velocity),
+                (blocks.M_FP, motion.acceleration),
+            )
+            for order, (matrix, history) in enumerate(terms):
+                column = np.asarray(matrix[:, [j]].toarray())[:, 0]
                 if np.any(column):
                     vectors.append(-column)
                     histories.append(history)
-                    inertial.append(is_inertial)
+                    rate.append(order)
         stacked = np.column_stack(vectors) if vectors else np.zeros((len(system.free), 0))
-        return cls(stacked, tuple(histories), np.array(inertial, dtype=bool))
+        return cls(stacked, tuple(histories), np.array(rate, dtype=np.int64))
+
+    @property
+    def inertial(self) -> npt.NDArray[np.bool_]:
+        """Terms (n_term,) in ü_P."""
+        return np.asarray(self.rate == 2)
+
+    def static(self, time: float) -> FloatArray:
+        """The force (n,) [N] of loads and displacements of supports alone."""
+        return np.asarray(self.vectors @ np.where(self.rate == 0, self.factors(np.array([time]))[0], 0.0))
 
     @property
     def n_term(self) -> int:

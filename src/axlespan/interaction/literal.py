@@ -32,9 +32,7 @@ class _Complete:
     M: FloatArray
     C: FloatArray
     K_bar: FloatArray  # N12 (22)
-    u: FloatArray
-    v: FloatArray
-    a: FloatArray
+    state: State
     G: FloatArray  # G_FX of the step before (n_F, n_contact)
     X: FloatArray  # contact forces of the step before (n_contact,)
     P: FloatArray  # external forces of the step before (n_F,)
@@ -50,10 +48,10 @@ def march_literal(plan: Plan, start: Start, recorder: Recorder) -> tuple[Structu
     for stretch in stretches(plan, structure, fleet, systems=False):
         for k in range(stretch.n_step):
             _step(plan, complete, stretch, k)
-            structure.state = State(complete.u[:n], complete.v[:n], complete.a[:n])
+            structure.state = State(*(q[:n] for q in (complete.state.u, complete.state.v, complete.state.a)))
             structure.path_load = -(complete.G[:n] @ complete.X)[structure.path_dofs]
             if fleet is not None:
-                fleet.state = State(complete.u[n:], complete.v[n:], complete.a[n:])
+                fleet.state = State(*(q[n:] for q in (complete.state.u, complete.state.v, complete.state.a)))
                 fleet.forces = complete.X[plan.fleet.coupled]
             recorder.step(stretch, k, structure, fleet, complete.X)
         recorder.end_of(stretch)
@@ -70,11 +68,11 @@ def _complete(plan: Plan, start: Start) -> _Complete:
     A0, A1, *_ = plan.settings.method.coefficients(plan.settings.time_step)
     alpha = plan.settings.method.alpha
     rows = plan.rows.positions(np.zeros(1))
-    state = [np.concatenate([getattr(start.structure, q), getattr(start.fleet, q)]) for q in ("u", "v", "a")]
-    return _Complete(
-        K, M, C, A0 * M + (1 + alpha) * A1 * C + (1 + alpha) * K, *state,
-        _G(plan, rows), start.forces.copy(), _P(plan, 0.0)[0],
-    )  # fmt: skip
+    state = State(
+        *(np.concatenate([getattr(start.structure, q), getattr(start.fleet, q)]) for q in ("u", "v", "a"))
+    )
+    K_bar = A0 * M + (1 + alpha) * A1 * C + (1 + alpha) * K  # (22)
+    return _Complete(K, M, C, K_bar, state, _G(plan, rows), start.forces.copy(), _P(plan, 0.0)[0])
 
 
 def _dense(a: sp.csr_array, b: sp.csr_array) -> FloatArray:
@@ -106,11 +104,12 @@ def _step(plan: Plan, c: _Complete, stretch: Stretch, k: int) -> None:
     settings = plan.settings
     alpha, step = settings.method.alpha, stretch.first + k
     A0, A1, A2, A3, A4, A5 = settings.method.coefficients(settings.time_step)
+    p = c.state
     G = _G(plan, stretch.positions[k : k + 1])
     P, inertial = _P(plan, step * settings.time_step)
-    F = (1 + alpha) * P - alpha * c.P - alpha * c.G @ c.X + alpha * (c.C @ c.v + c.K @ c.u) + inertial  # (15)
-    F_bar = F + c.M @ (A0 * c.u + A2 * c.v + A3 * c.a)  # (23)
-    F_bar += (1 + alpha) * c.C @ (A1 * c.u + A4 * c.v + A5 * c.a)
+    F = (1 + alpha) * P - alpha * c.P - alpha * c.G @ c.X + alpha * (c.C @ p.v + c.K @ p.u) + inertial  # (15)
+    F_bar = F + c.M @ (A0 * p.u + A2 * p.v + A3 * p.a)  # (23)
+    F_bar += (1 + alpha) * c.C @ (A1 * p.u + A4 * p.v + A5 * p.a)
     X = plan.fleet.weight.copy()
     forced, coupled = plan.fleet.forced, plan.fleet.coupled
     F_bar += (1 + alpha) * G[:, forced] @ X[forced]
@@ -119,7 +118,7 @@ def _step(plan: Plan, c: _Complete, stretch: Stretch, k: int) -> None:
     if len(coupled):
         u, X[coupled] = block_factorization(c.K_bar, G_bar.T).solve(F_bar, r_bar)
     else:
-        u = np.linalg.solve(c.K_bar, F_bar)
-    a = A0 * (u - c.u) - A2 * c.v - A3 * c.a  # (18)
-    v = A1 * (u - c.u) - A4 * c.v - A5 * c.a  # (20)
-    c.u, c.v, c.a, c.G, c.X, c.P = u, v, a, G, X, P
+        u = np.asarray(np.linalg.solve(c.K_bar, F_bar), dtype=np.float64)
+    a = A0 * (u - p.u) - A2 * p.v - A3 * p.a  # (18)
+    v = A1 * (u - p.u) - A4 * p.v - A5 * p.a  # (20)
+    c.state, c.G, c.X, c.P = State(u, v, a), G, X, P

@@ -117,7 +117,7 @@ def forced_load(plan: Plan, structure: StructureBody, stretch: Stretch, k: int) 
 def weighted_forces(plan: Plan, stretch: Stretch) -> FloatArray:
     """Weighted factors (n_step, n_term) of the external forces."""
     steps = np.arange(stretch.first - 1, stretch.first + stretch.n_step)
-    return plan.forces.weighted(steps * plan.settings.time_step, plan.settings.method)
+    return plan.forces.weighted(plan.times_of(steps), plan.settings.method)
 
 
 def initial_path_load(plan: Plan, structure: StructureBody, start: Start) -> FloatArray:

@@ -82,7 +82,7 @@ class BalanceMonitor:
     ) -> None:
         """Check consecutive steps."""
         plan, system = self._plan, self._plan.crossing.structure.system
-        times = steps * plan.settings.time_step
+        times = plan.times_of(steps)
         alpha = plan.settings.method.alpha
         totals = np.zeros(len(steps))
         for i, (_, prescribed, name) in enumerate(self._rows):
@@ -150,8 +150,7 @@ class TensionMonitor:
 
     def look(self, stretch: Stretch, forces: FloatArray) -> None:
         """Look at consecutive steps."""
-        dt = self._plan.settings.time_step
-        times = (stretch.first + np.arange(stretch.n_step)) * dt
+        times = self._plan.times_of(stretch.first + np.arange(stretch.n_step))
         self._peaks(times, forces)
         pulled = forces < 0.0
         for wheel in np.flatnonzero(

@@ -60,7 +60,11 @@ class Plan:
     @property
     def times(self) -> FloatArray:
         """Times (steps + 1,) [s]."""
-        return np.arange(self.settings.steps + 1) * self.settings.time_step
+        return self.times_of(np.arange(self.settings.steps + 1))
+
+    def times_of(self, steps: IntArray) -> FloatArray:
+        """Times [s] of time indices."""
+        return np.asarray(steps * self.settings.time_step, dtype=np.float64)
 
 
 def plan_for(crossing: Crossing, settings: Settings) -> Plan:
@@ -158,7 +162,7 @@ def _train_rows(crossing: Crossing, settings: Settings, moving: IntArray) -> Tra
     for name, wheels in lines.items():
         path = crossing.structure.line(name)
         if settings.footprint > 0.0:
-            path = path.averaged(settings.footprint)
+            path = path.spread(settings.footprint)
         free = _split(path, system, system.free)
         prescribed = _split(path, system, system.prescribed[moving]) if len(moving) else None
         paths.append(WheelPath(np.array(wheels, dtype=np.int64), free, prescribed, crossing.irregularity))

@@ -44,7 +44,7 @@ class Reactions:
         for line in dict.fromkeys(lines):
             path = crossing.structure.line(line)
             if self.plan.settings.footprint > 0.0:
-                path = path.averaged(self.plan.settings.footprint)
+                path = path.spread(self.plan.settings.footprint)
             wheels = np.array([i for i, name in enumerate(lines) if name == line], dtype=np.int64)
             result.append((wheels, path.renumbered(number)))
         return result
@@ -63,7 +63,7 @@ class Reactions:
         """
         system, plan = self.plan.crossing.structure.system, self.plan
         blocks = system.partition
-        times = steps * plan.settings.time_step
+        times = plan.times_of(steps)
         u, v, a = near
         motion = {
             name: np.zeros((len(steps), len(system.prescribed)))

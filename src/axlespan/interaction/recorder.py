@@ -187,7 +187,7 @@ class Recorder:
         self.tension.finish()
         n = self.completed // self.every + 1
         return Result(
-            time=np.arange(n) * self.every * plan.settings.time_step,
+            time=plan.times_of(np.arange(n) * self.every),
             sensor=tuple(plan.settings.sensors),
             contact=plan.crossing.train.contact_names,
             vehicle_dof=plan.fleet.dof_names,

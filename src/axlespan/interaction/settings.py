@@ -18,7 +18,7 @@ COUPLINGS = ("direct", "iterative", "refactored", "literal")
 DAMPED_ALPHA = -0.1
 
 #: Largest footprint [m] and its largest share of the running line, when none is given.
-FOOTPRINT, FOOTPRINT_SHARE = 0.3, 0.01
+FOOTPRINT, FOOTPRINT_SHARE = 1.2, 0.03
 
 
 @dataclass(frozen=True)

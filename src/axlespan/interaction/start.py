@@ -20,6 +20,7 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from axlespan.dynamics.integrator import Matrices, State
+from axlespan.contact.rows import RowBlock
 from axlespan.interaction.plan import Fleet, Plan
 from axlespan.linalg.factor import Factor, factorize
 
@@ -57,8 +58,7 @@ def start_of(plan: Plan) -> Start:
     rows, fleet = _rows_at_zero(plan), plan.fleet
     n, n_contact = plan.structure.size, len(fleet.weight)
     external = plan.forces.at(0.0) if plan.forces.n_term else np.zeros(n)
-    static = np.where(plan.forces.inertial, 0.0, plan.forces.factors(np.zeros(1))[0])
-    u_s, forces = _static(plan, plan.forces.vectors @ static, rows)
+    u_s, forces = _static(plan, plan.forces.static(0.0), rows)
     u_v, forces = _vehicles_at(fleet, forces, rows, u_s)
     structure = State(u_s, np.zeros(n), np.zeros(n))
     vehicles = State(u_v, np.zeros(fleet.matrices.size), np.zeros(fleet.matrices.size))
@@ -78,10 +78,10 @@ def _rows_at_zero(plan: Plan) -> _Rows:
     blocks = [plan.rows.rows(positions, wheels, derivative) for derivative in range(3)]
     n = plan.structure.size
     row = np.broadcast_to(wheels[:, None], blocks[0].dofs[0].shape).ravel()
-    matrices = [
+    E, E1, E2 = (
         sp.csr_array(sp.coo_array((b.weights[0].ravel(), (row, b.dofs[0].ravel())), shape=(len(wheels), n)))
         for b in blocks
-    ]
+    )
     r, r1, r2 = (plan.rows.irregularity(positions, derivative)[0] for derivative in range(3))
     height, rate = r.copy(), speed * r1
     second = speed**2 * r2 + acceleration * r1
@@ -91,20 +91,31 @@ def _rows_at_zero(plan: Plan) -> _Rows:
             np.array([getattr(m, name)(zero)[0] for m in motions])
             for name in ("value", "velocity", "acceleration")
         )
-        p0, p1, p2 = (
-            lambda q, b=b: (q[b.prescribed_dofs[0]] * b.prescribed_weights[0]).sum(axis=1) for b in blocks
-        )
-        height += p0(u)
-        rate += speed * p1(u) + p0(v)
-        second += speed**2 * p2(u) + acceleration * p1(u) + 2.0 * speed * p1(v) + p0(a)
-    return _Rows(*matrices, height, rate, second)
+        p0, p1, p2 = (_prescribed_rows(block, len(motions)) for block in blocks)
+        height += p0 @ u
+        rate += speed * (p1 @ u) + p0 @ v
+        second += speed**2 * (p2 @ u) + acceleration * (p1 @ u) + 2.0 * speed * (p1 @ v) + p0 @ a
+    return _Rows(E, E1, E2, height, rate, second)
+
+
+def _carried(E: sp.csr_array) -> npt.NDArray[np.bool_]:
+    """Which wheels (n_contact,) the structure carries."""
+    return np.asarray(abs(E).sum(axis=1) > 0.0)
+
+
+def _prescribed_rows(block: RowBlock, n: int) -> FloatArray:
+    """E_P (n_contact, n) of the prescribed d.o.f. that move."""
+    dofs, weights = block.prescribed_dofs[0], block.prescribed_weights[0]
+    result = np.zeros((len(dofs), n))
+    np.add.at(result, (np.arange(len(dofs))[:, None], dofs), weights)
+    return result
 
 
 def _static(plan: Plan, external: FloatArray, rows: _Rows) -> tuple[FloatArray, FloatArray]:
     """Deflection of the structure and contact forces with the train at rest on it."""
     fleet, n = plan.fleet, plan.structure.size
     forces = fleet.weight.copy()
-    carried = np.flatnonzero(np.abs(rows.E).sum(axis=1) > 0.0)
+    carried = np.flatnonzero(_carried(rows.E))
     if not len(carried) and not np.any(external):
         return np.zeros(n), forces + _elastic_share(fleet, rows.height)
     factor = factorize(plan.structure.K, kind=plan.settings.solver)
@@ -117,7 +128,7 @@ def _static(plan: Plan, external: FloatArray, rows: _Rows) -> tuple[FloatArray, 
     # X = X_st + k (E u + r) with E u = E u_0 - (E K⁻¹ Eᵀ) X
     k = _condensed(fleet)
     right = forces + k @ (rows.E @ u_0 + rows.height)
-    forces = np.linalg.solve(np.eye(len(forces)) + k @ compliance, right)
+    forces = np.asarray(np.linalg.solve(np.eye(len(forces)) + k @ compliance, right), dtype=np.float64)
     return u_0 - columns @ forces[carried], forces
 
 
@@ -178,7 +189,7 @@ def _accelerate(
     acceleration = float(plan.crossing.motion.acceleration(np.zeros(1))[0])
     out_of_balance = external - plan.structure.K @ structure.u - plan.structure.damping_force(structure.v)
     out_of_balance -= rows.E.T @ known
-    carried = np.abs(rows.E[x]).sum(axis=1) > 0.0
+    carried = _carried(rows.E)[x]
     still = not np.any(carried) and np.abs(out_of_balance).max(initial=0.0) <= 1e-9 * max(
         np.abs(external).max(initial=0.0), 1e-30
     )

@@ -9,7 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from axlespan.errors import InputError
-from axlespan.linalg.arrays import CsrMatrix, FloatArray, right_hand_side
+from axlespan.linalg.arrays import CsrMatrix, FloatArray, estimated_fill, right_hand_side
 from axlespan.linalg.definiteness import PivotBreakdown
 from axlespan.linalg.protocol import refuse_pickling
 
@@ -53,6 +53,7 @@ class CholmodFactor:
         lower: Any = sp.coo_array(sp.tril(matrix))
         rows, columns = (cvxopt.matrix(np.asarray(index, dtype=np.int64)) for index in lower.coords)
         sparse = cvxopt.spmatrix(cvxopt.matrix(lower.data), rows, columns, (self.n, self.n))
+        self._nbytes = int(8.0 * estimated_fill(matrix))
         before = dict(self._cholmod.options)
         self._cholmod.options["supernodal"] = (
             2  # A = L Lᵀ: fastest, and the only kind whose diagonal can be read
@@ -68,8 +69,8 @@ class CholmodFactor:
 
     @property
     def nbytes(self) -> int:
-        """Memory of the factor [byte]; counted by copying it, for cvxopt does not tell."""
-        return len(self._cholmod.getfactor(self._factor)) * (8 + 8)
+        """Memory of the factor [byte], estimated: cvxopt would destroy the factor to count it."""
+        return self._nbytes
 
     def solve(self, b: FloatArray, out: FloatArray | None = None) -> FloatArray:
         """Solve A x = b; see :meth:`axlespan.linalg.Factor.solve`."""

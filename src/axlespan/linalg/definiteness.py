@@ -170,7 +170,7 @@ def diagnosed(matrix: CsrMatrix, build: Callable[[CsrMatrix], Factor]) -> NotPos
 def _lowest_eigenpairs(
     scaled: CsrMatrix, build: Callable[[CsrMatrix], Factor]
 ) -> tuple[FloatArray, FloatArray]:
-    """Lowest eigenpairs by subspace iteration with about the smallest shift that makes the matrix definite."""
+    """Lowest eigenpairs by subspace iteration, shifted as little as makes the matrix definite."""
     n = scaled.shape[0]
     identity = sp.eye_array(n, format="csr")
 

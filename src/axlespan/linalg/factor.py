@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 
 from axlespan.errors import InputError
 from axlespan.linalg import cholmod, pardiso
-from axlespan.linalg.arrays import CsrMatrix, MatrixLike, symmetric_csr
+from axlespan.linalg.arrays import CsrMatrix, MatrixLike, estimated_fill, symmetric_csr
 from axlespan.linalg.banded import BandedFactor, BandOrder
 from axlespan.linalg.cholmod import CholmodFactor
 from axlespan.linalg.definiteness import (
@@ -72,8 +71,7 @@ def choose(matrix: MatrixLike) -> Choice:
     """Return the kind of factor whose solves should be quickest, with the reason.
 
     The cost of a band is known once its half-bandwidth is: n (kd + 1) entries. The fill of a sparse factor is
-    estimated as ¼ z log₂ n entries per equation (z: entries per row of A), which holds within a factor of two
-    on beams, plates and solids.
+    estimated, within a factor of two.
 
     Parameters
     ----------
@@ -95,7 +93,7 @@ def choose(matrix: MatrixLike) -> Choice:
 def _choose(csr: CsrMatrix, order: BandOrder) -> Choice:
     n, half_bandwidth = csr.shape[0], order.half_bandwidth
     sparse = available()[0]  # the best one of those that are there
-    fill = min(0.25 * csr.nnz / n * math.log2(n + 1), half_bandwidth + 1)
+    fill = min(estimated_fill(csr) / n, half_bandwidth + 1)
     per_equation, per_entry = _SOLVE_TIME[sparse]
     sparse_time = _SLOW_FACTORIZATION.get(sparse, 1.0) * (per_equation + per_entry * fill)
     per_equation, per_entry = _SOLVE_TIME["banded"]

@@ -43,7 +43,7 @@ class Profile:
     def require_continuous(self) -> None:
         """Raise `InputError` where the height itself jumps: a wheel with mass or a dashpot cannot follow."""
         for kink in self.kinks:
-            sides = np.array([kink - 1e-9, kink + 1e-9])
+            sides = np.array([kink - 1e-7, kink + 1e-7])
             if abs(np.diff(self.derivative(0, sides))[0]) > 1e-7:
                 raise InputError(
                     "must not jump under a dashpot or a wheel with mass",
@@ -82,7 +82,7 @@ def harmonic(
     if not start < end:
         raise InputError("must lie before the end", field="start", value=start, fix="Write start < end")
     wave = 2.0 * np.pi / wavelength
-    slack = 1e-9 * wavelength  # a wheel that stands at a bound up to rounding is inside
+    slack = 1e-9  # [m] a wheel that stands at a bound up to rounding is inside
 
     def bounded(x: FloatArray, inside: FloatArray) -> FloatArray:
         return np.where((x >= start - slack) & (x <= end + slack), inside, 0.0)

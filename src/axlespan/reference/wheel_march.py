@@ -96,7 +96,7 @@ def pass_event(path: WheelPath, time: float, modal: FloatArray) -> tuple[FloatAr
     """
     mass = path.units.wheel_mass
     position = path.motion.position(time)
-    aside = 4e-9 * path.beam.length
+    aside = 4e-9 * max(path.beam.length, 1.0)  # beyond the slack of supports and profiles
     places = np.array([0.0, path.beam.length, *path.profile.kinks])
     hit = (np.abs(position[:, np.newaxis] - places) < aside).any(axis=1) & (mass > 0.0)
     if not hit.any():

@@ -48,7 +48,7 @@ class LinearSpringContact(Part):
     """Stiffness."""
 
 
-_CONTACTS = Kinds("contact", CONTACTS, words_alone=CONTACTS)
+_CONTACTS = Kinds("contact", CONTACTS, "{kind: linear-spring, stiffness: 1.4 GN/m}", words_alone=CONTACTS)
 Contact = Annotated[
     Annotated[RigidContact, tag("rigid")]
     | Annotated[UnilateralContact, tag("unilateral")]
@@ -163,7 +163,7 @@ class Output(Part):
         Annotated[
             Annotated[
                 tuple[float, ...],
-                Several(Measured(TIME, at_least=0.0), "[0.5 s, 1 s]", increasing=True),
+                Several(Measured(TIME, at_least=0.0), "[0.5 s, 1 s], or {every: 100}", increasing=True),
                 LIST,
             ]
             | Annotated[EveryFew, MAPPING],

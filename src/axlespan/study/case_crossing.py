@@ -39,7 +39,7 @@ class Bounded(Part):
     @model_validator(mode="after")
     def _forward(self) -> Self:
         if self.from_ is not None and self.to is not None and self.to <= self.from_:
-            raise InputError("must lie behind from", field="to", fix="Exchange the two")
+            raise InputError("must be greater than from", field="to", fix="Exchange the two")
         return self
 
 
@@ -116,7 +116,12 @@ class SpectrumIrregularity(Bounded):
         return name
 
 
-KINDS = Kinds("irregularity", ("none", "harmonic", "table", "spectrum"), words_alone=("none",))
+KINDS = Kinds(
+    "irregularity",
+    ("none", "harmonic", "table", "spectrum"),
+    "{kind: harmonic, amplitude: 0.5 mm, wavelength: 5 m}",
+    words_alone=("none",),
+)
 Irregularity = Annotated[
     Annotated[NoIrregularity, tag("none")]
     | Annotated[HarmonicIrregularity, tag("harmonic")]

@@ -56,7 +56,7 @@ class ModalDamping(Part):
     """Ratio of critical damping."""
 
 
-_KINDS = Kinds("damping", ("rayleigh", "modal"))
+_KINDS = Kinds("damping", ("rayleigh", "modal"), "{kind: modal, ratio: 1 %}")
 
 
 def _one_form(raw: Any) -> Any:

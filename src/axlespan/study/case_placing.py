@@ -8,14 +8,14 @@ from pydantic import Field, model_validator
 
 from axlespan.errors import InputError
 from axlespan.study.checks import Part
-from axlespan.study.quantities import Count, Distance, Spacing
+from axlespan.study.quantities import Distance, Few, Spacing
 from axlespan.units import LENGTH, show
 
 
 class Placed(Part):
     """Vehicles of one kind, one behind the other."""
 
-    count: Count = 1
+    count: Few = 1
     """Number of such vehicles."""
     spacing: Annotated[Spacing | None, Field(examples=["25 m"])] = None
     """Distance from the first wheel of one vehicle to the first wheel of the next."""

@@ -15,7 +15,7 @@ from axlespan.study.faults import InputErrors
 from axlespan.study.kinds import Kinds, tag
 from axlespan.study.quantities import (
     Area,
-    Count,
+    Elements,
     MassPerLength,
     Modulus,
     PoissonRatio,
@@ -45,7 +45,7 @@ class SimpleSpan(Part):
     """Second moment of area for bending in the vertical plane."""
     mass_per_length: MassPerLength
     """Mass of the beam and all that it carries for good."""
-    elements: Annotated[Count, Field(examples=["20"])]
+    elements: Annotated[Elements, Field(examples=["20"])]
     """Number of beam elements."""
     damping: StructuralDamping | None = None
     """Structural damping; none when left out."""
@@ -74,7 +74,7 @@ class BeamProperties(Part):
     """Second moment of area for bending in the vertical plane."""
     mass_per_length: MassPerLength | None = None
     """Mass of the beam and all that it carries for good."""
-    elements: Count | None = None
+    elements: Elements | None = None
     """Number of beam elements of a span."""
     area: Area | None = None
     """Area of the cross-section."""
@@ -175,7 +175,11 @@ def _check_supports(supports: tuple[Support, ...] | None, length: float) -> None
         raise InputErrors(faults)
 
 
-KINDS = Kinds("structure", ("simple-span", "continuous-beam", "mesh", "matrices"))
+KINDS = Kinds(
+    "structure",
+    ("simple-span", "continuous-beam", "mesh", "matrices"),
+    "{kind: simple-span, length: 25 m, ...}",
+)
 Structure = Annotated[
     Annotated[SimpleSpan, tag("simple-span")]
     | Annotated[ContinuousBeam, tag("continuous-beam")]

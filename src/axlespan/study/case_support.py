@@ -73,7 +73,7 @@ class HarmonicRotation(Part):
     phase: Angle = 0.0
 
 
-_MOTIONS = Kinds("motion", ("constant", "table", "harmonic"))
+_MOTIONS = Kinds("motion", ("constant", "table", "harmonic"), "{kind: constant, value: -10 mm}")
 Motion = Annotated[
     Annotated[ConstantMotion, tag("constant")]
     | Annotated[TableMotion, tag("table")]

@@ -126,6 +126,7 @@ class LibraryVehicle(Placed):
 KINDS = Kinds(
     "vehicle",
     ("sprung-mass", "axle-loads", "rigid-mass", "multibody", "mesh", "matrices"),
+    "{vehicle: ice3, count: 8}",
     key="vehicle",
 )
 
@@ -139,12 +140,12 @@ def _known(raw: Any, info: ValidationInfo) -> Any:
     near = nearest(word, (*KINDS.names, *library))
     if word in library or (not library and near is None):
         return raw
-    fix = f"Did you mean {near}? " if near else ""
+    others = f"Kinds are {listed(KINDS.names)}; axlespan library lists the vehicles"
     raise InputError(
         "no such kind of vehicle, and none in the library",
         field="vehicle",
         value=word,
-        fix=f"{fix}Kinds are {listed(KINDS.names)}; axlespan library lists the vehicles",
+        fix=f"Did you mean {near}?" if near else others,
     )
 
 

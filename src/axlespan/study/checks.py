@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any, Final
 
 from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler, GetJsonSchemaHandler
@@ -73,13 +74,10 @@ class Measured(_Checked):
         """Return the value in SI units."""
         value = units.parse(raw, self.dimension)
         if not (self.above < value < self.below and self.at_least <= value <= self.at_most):
-            raise InputError(self._rule(), value=raw, fix=self._remedy(value))
+            raise InputError(self._rule(), value=raw, fix=self._remedy(raw, value))
         if not self.is_believable(value) and not _has_unit(raw):
-            raise InputError(
-                f"is taken as {self.plainly(value)} without a unit, and that looks wrong",
-                value=raw,
-                fix=self._intended(value),
-            )
+            rule = f"looks wrong: without a unit it is {self.plainly(value)}"
+            raise InputError(rule, value=raw, fix=self._intended(value))
         return value
 
     def is_believable(self, value: float) -> bool:
@@ -92,18 +90,21 @@ class Measured(_Checked):
         """Return the JSON Schema: a number, or a text with a unit."""
         unit = f"In {self.dimension.unit}." if self.dimension.unit else "A ratio."
         number: dict[str, Any] = {"type": "number", "description": unit}
-        for keyword, bound in (
-            ("exclusiveMinimum", self.above),
-            ("minimum", self.at_least),
-            ("exclusiveMaximum", self.below),
-            ("maximum", self.at_most),
-        ):
-            if abs(bound) != _INFINITY:
-                number[keyword] = bound
+        bounds = {
+            "exclusiveMinimum": self.above,
+            "minimum": self.at_least,
+            "exclusiveMaximum": self.below,
+            "maximum": self.at_most,
+        }
+        number |= {keyword: bound for keyword, bound in bounds.items() if abs(bound) != _INFINITY}
         text = {"type": "string", "pattern": r"^\s*[+\-−]?(\d|\.\d)"}
         return {"anyOf": [number, {**text, "description": f"With its unit: '{self.dimension.example}'."}]}
 
     def plainly(self, value: float) -> str:
+        """Return a value with its SI unit; a small fraction as a fraction."""
+        fraction = Fraction(value).limit_denominator(12)
+        if not self.dimension.unit and fraction.denominator in (3, 6) and float(fraction) == value:
+            return str(fraction)
         return f"{value:.6g} {self.dimension.unit}".strip()
 
     def _rule(self) -> str:
@@ -111,6 +112,8 @@ class Measured(_Checked):
             return "must be positive"
         if self.at_least == 0.0 and self.below == _INFINITY == self.at_most:
             return "must not be negative"
+        if self.at_least > -_INFINITY and self.at_most < _INFINITY:
+            return f"must be from {self.plainly(self.at_least)} to {self.plainly(self.at_most)}"
         bounds = (
             ("above", self.above),
             ("at least", self.at_least),
@@ -120,11 +123,12 @@ class Measured(_Checked):
         told = [f"{word} {self.plainly(bound)}" for word, bound in bounds if abs(bound) != _INFINITY]
         return f"must be {' and '.join(told)}"
 
-    def _remedy(self, value: float) -> str | None:
+    def _remedy(self, raw: Any, value: float) -> str | None:
         if self.dimension is units.RATIO and 1.0 <= value <= 100.0 and self.below <= 1.0:
             return f"Write {value:g} % if percent are meant"
-        example = self.dimension.example
-        return f"Write it as in {example}" if self.dimension.unit and self.above == 0.0 else None
+        if value < 0.0 and self.above == 0.0 and isinstance(raw, (int, float, str)):
+            return f"Write {str(raw).strip().lstrip('-−')}"
+        return f"Write, for example, {self.dimension.example}" if self.above == 0.0 else None
 
     def _intended(self, value: float) -> str:
         """Say which unit makes the number believable."""
@@ -156,7 +160,8 @@ class Whole(_Checked):
                 "must be a whole number", value=raw, fix="Write it without unit and quotes, as in 50"
             )
         if not self.at_least <= raw <= self.at_most:
-            raise InputError(f"must be a whole number from {self.at_least} to {self.at_most:.0e}", value=raw)
+            bound = f"least {self.at_least}" if raw < self.at_least else f"most {self.at_most}"
+            raise InputError(f"must be at {bound}", value=raw)
         return int(raw)
 
     def json_schema(self) -> dict[str, Any]:

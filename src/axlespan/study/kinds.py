@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -12,6 +12,7 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
 from axlespan.errors import InputError
+from axlespan.study.checks import Part
 from axlespan.study.faults import listed, nearest
 
 _OPEN, _CLOSE = "<", ">"
@@ -37,6 +38,8 @@ class Kinds:
         What comes in kinds, for messages: ``"structure"``.
     names : tuple of str
         The kinds.
+    example : str
+        Such a mapping.
     key : str
         Where the word stands.
     words_alone : tuple of str
@@ -45,36 +48,35 @@ class Kinds:
 
     what: str
     names: tuple[str, ...]
+    example: str
     key: str = "kind"
     words_alone: tuple[str, ...] = ()
 
     def checked(self, raw: Any) -> Any:
         """Return the mapping if its kind is known."""
-        if _kind_of(raw, self.key) in self.names and not isinstance(raw, Mapping):
+        if isinstance(raw, Part) and _kind_of(raw, self.key) in self.names:
             return raw
         if isinstance(raw, str) and raw in self.words_alone:
             return {self.key: raw}
         if not isinstance(raw, Mapping):
-            near = nearest(raw, self.names) if isinstance(raw, str) else None
             alone = f"{listed(self.words_alone)}, or " if self.words_alone else ""
+            near = nearest(raw, self.words_alone) if isinstance(raw, str) else None
             raise InputError(
-                f"must be {alone}a mapping with {self.key}",
+                f"must be {alone}a mapping",
                 value=raw,
-                fix=f"Write {{{self.key}: {near or self.names[-1]}, ...}}",
+                fix=f"Did you mean {near}?" if near else f"Write, for example, {self.example}",
             )
         if self.key not in raw:
             raise InputError(
-                f"is missing: it says which {self.what} this is",
+                f"is missing: it says what kind of {self.what} this is",
                 field=self.key,
                 fix=f"Add {self.key}: {listed(self.names)}",
             )
         word = raw[self.key]
         if word not in self.names:
             near = nearest(word, self.names) if isinstance(word, str) else None
-            fix = f"Did you mean {near}? " if near else ""
-            raise InputError(
-                f"no such {self.what}", field=self.key, value=word, fix=f"{fix}Known are {listed(self.names)}"
-            )
+            fix = f"Did you mean {near}?" if near else f"Known are {listed(self.names)}"
+            raise InputError(f"no such kind of {self.what}", field=self.key, value=word, fix=fix)
         return raw
 
     def discriminator(self) -> Discriminator:
@@ -90,9 +92,11 @@ LIST: Final = tag("list")
 """Mark of a list, where a list or a mapping may stand."""
 MAPPING: Final = tag("mapping")
 """Mark of a mapping, where a list or a mapping may stand."""
-list_or_mapping: Final[Callable[[Any], str]] = lambda raw: (
-    MAPPING.tag if isinstance(raw, Mapping) or not isinstance(raw, (list, tuple)) else LIST.tag
-)
+
+
+def list_or_mapping(raw: Any) -> str:
+    """Return the mark of a mapping or, for all else, of a list."""
+    return MAPPING.tag if isinstance(raw, (Mapping, Part)) else LIST.tag
 
 
 class ExistingFile:

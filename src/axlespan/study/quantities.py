@@ -71,6 +71,8 @@ Gravity = Annotated[float, Measured(ACCELERATION, at_least=0.0)]
 Factor = Annotated[float, Measured(RATIO, above=0.0)]
 
 Count = Annotated[int, Whole()]
+Few = Annotated[int, Whole(at_most=100_000)]
+Elements = Annotated[int, Whole(at_most=1_000_000)]
 Seed = Annotated[int, Whole(at_least=0, at_most=2**63 - 1)]
 Text = Annotated[str, Word()]
 Name = Annotated[str, Word(strict=True)]

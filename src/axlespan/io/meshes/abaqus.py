@@ -1,28 +1,39 @@
-"""Abaqus input files in: nodes, elements and sets, flat or as parts and instances; all else is passed over."""
+"""Abaqus input files in: nodes, elements and sets, flat or as parts and instances."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from os import PathLike
 
 import numpy as np
 import numpy.typing as npt
 
-from axlespan.errors import InputError
-from axlespan.io.lines import load_bytes, text_of
+from axlespan.errors import InputError, Place
+from axlespan.io.lines import load_bytes, numbers_of, text_of
 from axlespan.io.meshes.abaqus_keywords import Keyword, keywords_of
-from axlespan.io.meshes.abaqus_sets import SetDefinition, Sets
+from axlespan.io.meshes.abaqus_sets import Scope, SetDefinition, resolve
 from axlespan.io.meshes.abaqus_types import KIND_OF_TYPE, VTK_FROM_ABAQUS
-from axlespan.io.meshes.assemble import ElementRows, NodeRows, Unsupported, assemble, refuse
+from axlespan.io.meshes.assemble import (
+    ElementRows,
+    Lookup,
+    NodeRows,
+    Unsupported,
+    assemble,
+    refuse,
+    split_by_block,
+)
 from axlespan.model.mesh import CELL_KINDS, Mesh
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-#: Keywords that make or place nodes and elements in a way that isn't supported: passing over them would be wrong.
+#: Keywords that make or place nodes and elements and aren't supported; passing over them would be wrong.
 _GENERATORS = {
-    **{name: "Let the preprocessor write all nodes and elements." for name in ("NGEN", "NFILL", "NCOPY", "NMAP")},
+    **{
+        name: "Let the preprocessor write all nodes and elements."
+        for name in ("NGEN", "NFILL", "NCOPY", "NMAP")
+    },
     **{name: "Let the preprocessor write all nodes and elements." for name in ("ELGEN", "ELCOPY", "UEL")},
     "SYSTEM": "Write the coordinates in the global system.",
     "INCLUDE": "Put the content of the included file in its place.",
@@ -39,18 +50,6 @@ class _Part:
     node_sets: list[SetDefinition] = field(default_factory=list)
     element_sets: list[SetDefinition] = field(default_factory=list)
 
-    def mesh(self, file: str) -> Mesh:
-        """The part as a mesh, in its own axes."""
-        nodes = NodeRows.joined(self.nodes)
-        labels = np.concatenate([np.empty(0, dtype=np.int64), *(rows.labels for rows in self.elements)])
-        element_sets = Sets(self.element_sets, labels).resolved()
-        of_elements = {
-            name: np.concatenate([rows.nodes[np.isin(rows.labels, chosen)].ravel() for rows in self.elements])
-            for name, chosen in element_sets.items()
-        }
-        node_sets = Sets(self.node_sets, nodes.labels, of_elements).resolved()
-        return assemble(file, nodes, self.elements, node_sets, element_sets)
-
 
 @dataclass(frozen=True, eq=False)
 class _Instance:
@@ -58,9 +57,9 @@ class _Instance:
 
     name: str
     part: _Part
-    translation: FloatArray
-    axis: FloatArray  # (2, 3) two points of the axis of rotation
-    angle: float  # [rad]
+    translation: FloatArray = field(default_factory=lambda: np.zeros(3))
+    axis: FloatArray = field(default_factory=lambda: np.zeros((2, 3)))  # two points on the axis of rotation
+    angle: float = 0.0  # [rad]
 
     def placed(self, mesh: Mesh) -> Mesh:
         """The mesh moved, then turned about the axis (Rodrigues)."""
@@ -70,17 +69,19 @@ class _Instance:
         if self.angle and length:
             a, arms = direction / length, points - origin
             along = np.outer(arms @ a, a)
-            points = origin + along + np.cos(self.angle) * (arms - along) + np.sin(self.angle) * np.cross(a, arms)
+            points = (
+                origin + along + np.cos(self.angle) * (arms - along) + np.sin(self.angle) * np.cross(a, arms)
+            )
         return mesh.with_points(points)
 
 
 def read_abaqus(path: str | PathLike[str]) -> Mesh:
     """Read the mesh of an Abaqus input file.
 
-    Read are ``*NODE``, ``*ELEMENT``, ``*NSET`` and ``*ELSET`` (also ``GENERATE``, sets of sets, nodes of an element
-    set), ``*PART``, ``*INSTANCE`` (moved and turned) and ``*ASSEMBLY``. With one instance sets keep their names; with
-    several, the sets of an instance are called ``instance.set``. Materials, sections, loads and steps are
-    passed over: give them in the case file by the names of the sets.
+    Read are ``*NODE``, ``*ELEMENT``, ``*NSET`` and ``*ELSET`` (also ``GENERATE``, sets of sets, nodes of an
+    element set), ``*PART``, ``*INSTANCE`` (moved and turned) and ``*ASSEMBLY``. With one instance sets keep
+    their names; with several, the sets of an instance are called ``instance.set``. Materials, sections,
+    loads and steps are passed over: give them in the case file by the names of the sets.
 
     Parameters
     ----------
@@ -114,21 +115,26 @@ class _Reader:
         self.file = file
         self.assembly = _Part()  # of a flat file: the whole model
         self.parts: dict[str, _Part] = {}
-        self.instances: dict[str, _Instance] = {}
-        self.assembly_sets: list[tuple[str, SetDefinition]] = []  # with the instance that they refer to
+        self.instances: dict[str, _Instance] = {}  # by name in upper case
         self.current = self.assembly
         self.strange: list[Unsupported] = []
 
     def take(self, keyword: Keyword) -> None:
         """Read a keyword block, or pass over it."""
+        readers = {
+            **{"NODE": self._node, "ELEMENT": self._element, "NSET": self._set, "ELSET": self._set},
+            **{"PART": self._part, "INSTANCE": self._instance},
+        }
         name = keyword.name
         if name in _GENERATORS:
             raise InputError("is not supported", field=f"*{name}", place=keyword.place, fix=_GENERATORS[name])
-        if name in ("NODE", "ELEMENT", "NSET", "ELSET", "PART", "INSTANCE"):
+        if name in readers:
             if "INPUT" in keyword.parameters:
                 fix = "Put the content of that file in its place."
-                raise InputError("with INPUT is not supported", field=f"*{name}", place=keyword.place, fix=fix)
-            getattr(self, f"_{name.lower()}")(keyword)
+                raise InputError(
+                    "with INPUT is not supported", field=f"*{name}", place=keyword.place, fix=fix
+                )
+            readers[name](keyword)
         elif name in ("END PART", "END INSTANCE", "END ASSEMBLY", "ASSEMBLY"):
             self.current = self.assembly
 
@@ -141,18 +147,21 @@ class _Reader:
     def _instance(self, keyword: Keyword) -> None:
         name, part = keyword.required("NAME"), keyword.parameters.get("PART", "")
         if name.upper() in self.instances:
-            raise InputError("is already the name of an instance", field="*INSTANCE", value=name, place=keyword.place)
+            raise InputError(
+                "is already the name of an instance", field="*INSTANCE", value=name, place=keyword.place
+            )
         if part and part.upper() not in self.parts:
             raise InputError("is not a part of the file", field="*INSTANCE", value=part, place=keyword.place)
-        rows = [_floats(keyword, i, row) for i, row in enumerate(keyword.words())]
-        if len(rows) > 2 or (rows and len(rows[0]) != 3) or (len(rows) == 2 and len(rows[1]) != 7):
-            rule = "must be followed by a translation (3 numbers) and a rotation (7 numbers), or less"
+        rows = keyword.words()
+        numbers = [numbers_of([row], width) for row, width in zip(rows, (3, 7), strict=False)]
+        if len(rows) > 2 or any(values is None or not np.isfinite(values).all() for values in numbers):
+            rule = "must be followed by a translation (3 numbers) and a rotation (7 numbers), or by less"
             raise InputError(rule, field="*INSTANCE", value=name, place=keyword.place)
-        shift = np.array(rows[0]) if rows else np.zeros(3)
-        turn = np.array(rows[1]) if len(rows) == 2 else np.zeros(7)
+        moves = np.concatenate([np.zeros((0,)), *(values[0] for values in numbers if values is not None)])
+        moves = np.concatenate([moves, np.zeros(10 - len(moves))])
         own = self.parts[part.upper()] if part else _Part()
-        axis, angle = turn[:6].reshape(2, 3), float(np.deg2rad(turn[6]))
-        self.instances[name.upper()] = _Instance(name, own, shift, axis, angle)
+        angle = float(np.deg2rad(moves[9]))
+        self.instances[name.upper()] = _Instance(name, own, moves[:3], moves[3:9].reshape(2, 3), angle)
         self.current = own
 
     def _node(self, keyword: Keyword) -> None:
@@ -162,7 +171,7 @@ class _Reader:
         labels, points = keyword.node_table()
         self.current.nodes.append(NodeRows(labels, points, keyword.numbers))
         if keyword.parameters.get("NSET"):
-            self.current.node_sets.append(SetDefinition.of_labels(keyword, keyword.parameters["NSET"], labels))
+            self.current.node_sets.append(SetDefinition(keyword.parameters["NSET"], keyword, "", labels))
 
     def _element(self, keyword: Keyword) -> None:
         name = keyword.required("TYPE").upper()
@@ -174,40 +183,69 @@ class _Reader:
         nodes = rows[:, 1:][:, VTK_FROM_ABAQUS[kind]] if kind in VTK_FROM_ABAQUS else rows[:, 1:]
         self.current.elements.append(ElementRows(kind, rows[:, 0], nodes, lines))
         if keyword.parameters.get("ELSET"):
-            definition = SetDefinition.of_labels(keyword, keyword.parameters["ELSET"], rows[:, 0])
-            self.current.element_sets.append(definition)
+            self.current.element_sets.append(
+                SetDefinition(keyword.parameters["ELSET"], keyword, "", rows[:, 0])
+            )
 
-    def _nset(self, keyword: Keyword) -> None:
-        self._set(keyword, "NSET", self.current.node_sets)
-
-    def _elset(self, keyword: Keyword) -> None:
-        self._set(keyword, "ELSET", self.current.element_sets)
-
-    def _set(self, keyword: Keyword, what: str, target: list[SetDefinition]) -> None:
-        definition = SetDefinition.of_keyword(keyword, keyword.required(what))
+    def _set(self, keyword: Keyword) -> None:
+        name = keyword.required(keyword.name)
         instance = keyword.parameters.get("INSTANCE", "").upper()
-        if not instance:
-            target.append(definition)
-        elif instance not in self.instances:
-            raise InputError("is not an instance of the file", field=f"*{what}", value=instance, place=keyword.place)
-        else:
-            self.assembly_sets.append((instance, definition))
+        if instance and instance not in self.instances:
+            raise InputError(
+                "is not an instance of the file",
+                field=f"*{keyword.name}",
+                value=instance,
+                place=keyword.place,
+            )
+        sets = self.current.node_sets if keyword.name == "NSET" else self.current.element_sets
+        sets.append(SetDefinition(name, keyword, instance))
 
     def mesh(self) -> Mesh:
         """The whole mesh."""
         refuse(self.file, self.strange)
-        if not self.instances and len(self.parts) == 1:
-            return next(iter(self.parts.values())).mesh(self.file)  # a part alone
-        flat = not self.instances
-        mesh = (self.assembly if flat else _without_references(self.assembly, self.instances)).mesh(self.file)
-        for key, instance in self.instances.items():
-            own = instance.placed(instance.part.mesh(self.file))
-            if len(self.instances) > 1:
-                own = _prefixed(own, instance.name)
-            for owner, definition in self.assembly_sets:
-                if owner == key:
-                    own = _with_set(own, definition)
-            mesh = mesh.merged(own) if mesh.n_node else own
-        if not mesh.n_node:
-            raise InputError("has no nodes", field="mesh", value=self.file, fix="Write the model with *NODE and *ELEMENT.")
-        return _united(mesh)
+        if not self.instances:  # parts without an assembly stand as they are
+            self.instances = {name: _Instance(name, part) for name, part in self.parts.items()}
+        return _assembled(self.file, self.assembly, self.instances)
+
+
+def _assembled(file: str, assembly: _Part, instances: Mapping[str, _Instance]) -> Mesh:
+    """Merge the instances and the assembly's own nodes, and resolve the sets of all of them."""
+    mesh = Mesh(np.empty((0, 3)))
+    node_scopes: dict[str, Scope] = {}
+    element_scopes: dict[str, Scope] = {}
+    node_sets: dict[str, IntArray] = {}
+    element_sets: dict[str, IntArray] = {}
+    for key, instance in [*instances.items(), ("", _Instance("", assembly))]:
+        own = assemble(file, NodeRows.joined(instance.part.nodes), instance.part.elements, {}, {})
+        labels = np.concatenate([np.empty(0, dtype=np.int64), *(block.labels for block in own.blocks)])
+        nodes = _scope(file, own.node_labels, mesh.n_node, "node")
+        elements = _scope(file, labels, mesh.n_element, "element")
+        mesh = mesh.merged(instance.placed(own))
+        of_blocks = resolve(instance.part.element_sets, elements, element_scopes)
+        used = {name.upper(): _nodes_of(mesh, members) for name, members in of_blocks.items()}
+        of_nodes = resolve(instance.part.node_sets, nodes, node_scopes, used)
+        node_scopes[key] = replace(nodes, sets={name.upper(): members for name, members in of_nodes.items()})
+        element_scopes[key] = replace(
+            elements, sets={name.upper(): members for name, members in of_blocks.items()}
+        )
+        prefix = f"{instance.name}." if key and len(instances) > 1 else ""
+        for found, target in ((of_nodes, node_sets), (of_blocks, element_sets)):
+            for name, members in found.items():
+                target[prefix + name] = np.union1d(target.get(prefix + name, members[:0]), members)
+    if not mesh.n_node:
+        fix = "Write the model with *NODE and *ELEMENT."
+        raise InputError("has no nodes", field="mesh", place=Place(file), fix=fix)
+    bounds = np.cumsum([0, *(len(block) for block in mesh.blocks)])
+    split = {name: split_by_block(members, bounds) for name, members in element_sets.items()}
+    return replace(mesh, node_sets=node_sets, element_sets=split)
+
+
+def _scope(file: str, labels: IntArray, first: int, what: str) -> Scope:
+    return Scope(labels, Lookup(labels, np.zeros_like(labels), file, what), first)
+
+
+def _nodes_of(mesh: Mesh, elements: IntArray) -> IntArray:
+    """Nodes of elements that are counted through all blocks."""
+    bounds = np.cumsum([0, *(len(block) for block in mesh.blocks)])
+    used = [mesh.blocks[block].nodes[inside].ravel() for block, inside in split_by_block(elements, bounds)]
+    return np.unique(np.concatenate([np.empty(0, dtype=np.int64), *used]))

@@ -38,6 +38,10 @@ class Keyword:
         """Place of the keyword line."""
         return Place(self.file, self.line)
 
+    def place_of(self, row: int) -> Place:
+        """Place of a data line."""
+        return Place(self.file, int(self.numbers[row]))
+
     def required(self, parameter: str) -> str:
         """A parameter that must be there."""
         if not self.parameters.get(parameter):
@@ -58,7 +62,7 @@ class Keyword:
     def error(self, rule: str, row: int, fix: str | None = None) -> InputError:
         """An error at a data line that shows it."""
         value = self.data[row].strip()
-        return InputError(rule, field=f"*{self.name}", value=value, place=Place(self.file, int(self.numbers[row])), fix=fix)
+        return InputError(rule, field=f"*{self.name}", value=value, place=self.place_of(row), fix=fix)
 
     def node_table(self) -> tuple[IntArray, FloatArray]:
         """Labels (n,) and coordinates (n, 3) of nodes; coordinates that are left out are zero."""

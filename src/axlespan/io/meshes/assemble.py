@@ -149,7 +149,7 @@ def assemble(
                 for name, chosen in node_sets.items()
             },
             element_sets={
-                name: _split(finder.positions(chosen, np.zeros_like(chosen), f"set '{name}'"), bounds)
+                name: split_by_block(finder.positions(chosen, np.zeros_like(chosen), f"set '{name}'"), bounds)
                 for name, chosen in element_sets.items()
             },
             node_labels=nodes.labels,
@@ -169,7 +169,7 @@ def _blocks(elements: Sequence[ElementRows], lookup: Lookup) -> tuple[list[CellB
     return blocks, lines
 
 
-def _split(positions: IntArray, bounds: IntArray) -> ElementSet:
+def split_by_block(positions: IntArray, bounds: IntArray) -> ElementSet:
     """Positions among all elements as pairs of block and positions in it."""
     parts = []
     for block, (start, end) in enumerate(pairwise(bounds.tolist())):

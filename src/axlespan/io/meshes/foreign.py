@@ -62,7 +62,9 @@ np.savez(target, **arrays)
 """
 
 
-def read_with_meshlane(path: str | PathLike[str], file_format: str | None = None, *, timeout: float = 600.0) -> Mesh:
+def read_with_meshlane(
+    path: str | PathLike[str], file_format: str | None = None, *, timeout: float = 600.0
+) -> Mesh:
     """Read a mesh through meshlane (``pip install axlespan[mesh]``).
 
     Parameters
@@ -86,16 +88,30 @@ def read_with_meshlane(path: str | PathLike[str], file_format: str | None = None
     file = str(path)
     load_bytes(path)
     if find_spec("meshlane") is None:
-        fix = "Install it with: pip install axlespan[mesh]; or export the mesh as Gmsh MSH 4.1 or Abaqus .inp."
+        fix = (
+            "Install it with: pip install axlespan[mesh]; or export the mesh as Gmsh MSH 4.1 or Abaqus .inp."
+        )
         raise InputError("needs the optional package meshlane", field="mesh file", value=file, fix=fix)
     with tempfile.TemporaryDirectory() as folder:
         target = Path(folder) / "mesh.npz"
-        command = [sys.executable, "-P", "-c", _SCRIPT, str(Path(path).absolute()), file_format or "", str(target)]
+        command = [
+            sys.executable,
+            "-P",
+            "-c",
+            _SCRIPT,
+            str(Path(path).absolute()),
+            file_format or "",
+            str(target),
+        ]
         try:
-            done = subprocess.run(command, capture_output=True, timeout=timeout, check=False, stdin=subprocess.DEVNULL)
+            done = subprocess.run(
+                command, capture_output=True, timeout=timeout, check=False, stdin=subprocess.DEVNULL
+            )
         except subprocess.TimeoutExpired:
             rule = f"could not be read within {timeout:g} s: the file is damaged or very large"
-            raise InputError(rule, place=Place(file), fix="Export it as Gmsh MSH 4.1 or Abaqus .inp.") from None
+            raise InputError(
+                rule, place=Place(file), fix="Export it as Gmsh MSH 4.1 or Abaqus .inp."
+            ) from None
         if done.returncode != 0 or not target.exists():
             raise _failure(file, done.stderr.decode("utf-8", errors="replace"))
         try:
@@ -111,7 +127,9 @@ def _failure(file: str, output: str) -> InputError:
     lines = [line.strip() for line in output.splitlines() if line.strip()]
     reason = f" ({lines[-1][:200]})" if lines else ""
     rule = f"cannot be read as a mesh{reason}"
-    return InputError(rule, place=Place(file), fix="Check its format and extension, or export it as Gmsh MSH 4.1.")
+    return InputError(
+        rule, place=Place(file), fix="Check its format and extension, or export it as Gmsh MSH 4.1."
+    )
 
 
 def _mesh(file: str, arrays: dict[str, npt.NDArray[np.generic]]) -> Mesh:
@@ -120,7 +138,9 @@ def _mesh(file: str, arrays: dict[str, npt.NDArray[np.generic]]) -> Mesh:
     refuse(file, (Unsupported(f"'{name}'", count, 0) for name, count in kinds if name not in _KINDS))
     points = np.asarray(arrays["points"], dtype=np.float64)
     if points.ndim != 2 or not 1 <= points.shape[1] <= 3:
-        raise InputError("must have one to three coordinates", field="points", value=points.shape, place=Place(file))
+        raise InputError(
+            "must have one to three coordinates", field="points", value=points.shape, place=Place(file)
+        )
     points = np.column_stack([points, np.zeros((len(points), 3 - points.shape[1]))])
     labels = np.arange(1, len(points) + 1)
     nodes = NodeRows(labels, points, np.zeros_like(labels))

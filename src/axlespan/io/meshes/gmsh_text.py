@@ -222,9 +222,10 @@ def _elements_2(lines: Lines) -> tuple[TypeRows, ...]:
     physical = np.where(tags >= 1, values[np.minimum(starts + 3, len(values) - 1)], 0)
     entity = np.where(tags >= 2, values[np.minimum(starts + 4, len(values) - 1)], 0)
     groups = np.column_stack([types, tags, np.abs(physical)]) if count else np.empty((0, 3), dtype=np.int64)
-    distinct, member = np.unique(groups, axis=0, return_inverse=True)
+    distinct, first_row, member = np.unique(groups, axis=0, return_index=True, return_inverse=True)
     parts, entities = [], []
-    for i, (kind, tag_count, group) in enumerate(distinct.tolist()):
+    for i in np.argsort(first_row).tolist():
+        kind, tag_count, group = distinct[i].tolist()
         rows = np.flatnonzero(member.reshape(-1) == i)
         first = starts[rows, None] + 3 + tag_count
         nodes = values[first + np.arange(node_count(kind) or 0)]

@@ -92,10 +92,11 @@ def _grouped(mesh: Mesh) -> tuple[dict[tuple[str, int], int], list[_Rows]]:
 
 def _points(mesh: Mesh, names: dict[tuple[str, int], int], first: int) -> Iterator[_Rows]:
     """Point elements for the node sets that no element set of the same name implies."""
-    sets = {}
-    for name, nodes in mesh.node_sets.items():
-        if name not in mesh.element_sets or not np.array_equal(nodes, _implied(mesh, name)):
-            sets[name] = nodes
+    sets = {
+        name: nodes
+        for name, nodes in mesh.node_sets.items()
+        if name not in mesh.element_sets or not np.array_equal(nodes, _implied(mesh, name))
+    }
     tags, member = _combinations(names, sets, mesh.n_node, 0)
     for i, own in enumerate(tags):
         if own:
@@ -122,7 +123,9 @@ def _combinations(
     if not sets:
         return [()], np.zeros(count, dtype=np.int64)
     found, member = np.unique(inside, axis=1, return_inverse=True)
-    combinations = [tuple(tag for tag, has in zip(tags, column, strict=True) if has) for column in found.T.tolist()]
+    combinations = [
+        tuple(tag for tag, has in zip(tags, column, strict=True) if has) for column in found.T.tolist()
+    ]
     return combinations, member.reshape(-1)
 
 

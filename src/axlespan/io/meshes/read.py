@@ -44,6 +44,5 @@ def read_mesh(path: str | PathLike[str], *, format: str | None = None) -> Mesh:
     name = format or _FORMAT_OF_EXTENSION.get(Path(path).suffix.lower())
     if format is None and load_bytes(path).lstrip().startswith(b"$MeshFormat"):
         name = "gmsh"
-    if name in _READERS:
-        return _READERS[name](path)
-    return read_with_meshlane(path, name)
+    reader = _READERS.get(name or "")
+    return reader(path) if reader else read_with_meshlane(path, name)
