@@ -60,11 +60,11 @@ def test_a_beam_stiff_in_shear_is_a_thin_beam():
 
 def test_the_solid_model_of_the_second_example_lies_near_the_timoshenko_beam():
     # N12's solid mesh, 2.2272 m x 2.5 m, vibrates at 29.59 rad/s; a beam theory with kappa = 5/6 gets
-    # shear and rotary inertia right to a few parts in a thousand
+    # shear and rotary inertia nearly right: 29.56 rad/s
     area, inertia = 2.2272 * 2.5, 2.2272 * 2.5**3 / 12
     shear = 5 / 6 * 2.87e9 / 2.4 * area
     omega = timoshenko_frequencies(25.0, 2.87e9 * inertia, shear, 2303.0, 2303.0 * inertia / area, 1)[0]
-    assert omega == pytest.approx(29.59, rel=4e-3)
+    assert omega == pytest.approx(29.59, rel=2e-3)
     assert omega < 30.02 * 0.99
 
 

@@ -1,5 +1,7 @@
 """The suspended body against a numerical integration of its equation and against textbook limits."""
 
+import itertools
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -23,8 +25,8 @@ def integrated(body, foot, foot_rate, breaks, start=(0.0, 0.0)):
         return [state[1], push / body.mass]
 
     rows, state = [], np.array(start)
-    for a, b in zip(breaks[:-1], breaks[1:], strict=True):
-        t = TIME[(TIME >= a) & (TIME < b)]
+    for a, b in itertools.pairwise(breaks):
+        t = np.array([t for t in TIME if a <= t < b])
         solved = solve_ivp(rates, (a, b), state, "DOP853", t_eval=np.append(t, b), rtol=1e-11, atol=1e-14)
         rows.append(solved.y[:, :-1])
         state = solved.y[:, -1]

@@ -61,7 +61,7 @@ def simple_span(
     elements : int
         Number of beam elements.
     area : float, optional
-        [m^2]; adds the axial d.o.f. (and the rotary inertia, with a shear area).
+        [m^2]; adds the axial d.o.f. and, with a shear area, the rotary inertia of the section.
     shear_area : float, optional
         κA [m^2]; makes it a Timoshenko beam.
     damping : Rayleigh or Modal, optional
@@ -96,9 +96,9 @@ def continuous_beam(
     second_moment: float | Sequence[float],
     mass_per_length: float | Sequence[float],
     elements: int | Sequence[int],
-    area: float | None = None,
-    shear_area: float | None = None,
-    poisson_ratio: float = 0.2,
+    area: float | Sequence[float | None] | None = None,
+    shear_area: float | Sequence[float | None] | None = None,
+    poisson_ratio: float | Sequence[float] = 0.2,
     damping: Damping | None = None,
     supports: Sequence[SupportAt] | None = None,
     name: str = "continuous beam",
@@ -123,15 +123,25 @@ def continuous_beam(
             (mass_per_length, "mass_per_length"),
         )
     )
-    sections = [
-        BeamSection(second_moment=moment, area=area, shear_area=shear_area, mass_per_length=mass)
-        for moment, mass in zip(moments, masses, strict=True)
+    areas, shear_areas = (
+        _per_span(values, n, field) for values, field in ((area, "area"), (shear_area, "shear_area"))
+    )
+    if any(value is None for value in areas) and any(value is not None for value in areas):
+        raise InputError("must be given for all spans or for none", field="area", value=areas)
+    ratios = _per_span(poisson_ratio, n, "poisson_ratio")
+    properties = [
+        BeamSection(
+            second_moment=moments[i],
+            area=areas[i],
+            shear_area=shear_areas[i],
+            mass_per_length=masses[i],
+            rotary_inertia=areas[i] is not None and shear_areas[i] is not None,
+        ).properties(Material(moduli[i], ratios[i]))
+        for i in range(n)
     ]
-    materials = [Material(modulus, poisson_ratio) for modulus in moduli]
-    properties = [section.properties(material) for section, material in zip(sections, materials, strict=True)]
     ends = np.concatenate([[0.0], np.cumsum(lengths)])
     grid = [np.linspace(a, b, count + 1) for a, b, count in zip(ends[:-1], ends[1:], counts, strict=True)]
-    chosen = _default_supports(ends, area) if supports is None else list(supports)
+    chosen = _default_supports(ends, areas[0]) if supports is None else list(supports)
     x = _with_positions(np.unique(np.concatenate(grid)), [support.position for support in chosen])
     model = Model(plane=True).with_nodes(np.column_stack([x, np.zeros_like(x)]))
     middle = 0.5 * (x[1:] + x[:-1])
@@ -153,8 +163,8 @@ def continuous_beam(
     )
 
 
-def _per_span(values: T | Sequence[T], n: int, field: str) -> list[T]:
-    if isinstance(values, Sequence):
+def _per_span(values: T | Sequence[T] | np.ndarray, n: int, field: str) -> list[T]:
+    if isinstance(values, Sequence | np.ndarray):
         if len(values) != n:
             raise InputError(
                 f"must be one value or one for each of the {n} spans", field=field, value=list(values)
@@ -164,7 +174,7 @@ def _per_span(values: T | Sequence[T], n: int, field: str) -> list[T]:
 
 
 def _count(elements: int) -> int:
-    if isinstance(elements, bool) or int(elements) != elements or elements < 1:
+    if isinstance(elements, bool) or not np.isfinite(elements) or int(elements) != elements or elements < 1:
         raise InputError("must be a whole number of at least 1", field="elements", value=elements)
     if elements > 1_000_000:
         raise InputError("must be at most 1 000 000", field="elements", value=elements)

@@ -1,0 +1,1 @@
+"""Contact between wheels and running lines: motion along the line and contact rows."""

@@ -69,7 +69,7 @@ class Alpha:
                 value=gamma,
                 fix="Use 0.5, or leave it out",
             )
-        least = gamma / 2.0 if self.alpha == 0.0 else 0.25 * (1.0 - self.alpha) ** 2
+        least = gamma / 2.0
         if beta < least - 1e-9:
             raise InputError(
                 f"must be at least {least:g} for this alpha and gamma, or the method is only conditionally stable",

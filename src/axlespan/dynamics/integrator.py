@@ -1,9 +1,9 @@
-"""One body in time: M ü + C u̇ + K u = f by the alpha method, with accelerations as unknowns.
+r"""One body in time: M ü + C u̇ + K u = f by the alpha method, with accelerations as unknowns.
 
 With the predictors ũ = u + Δt u̇ + (½ - β) Δt² ü and ṽ = u̇ + (1 - γ) Δt ü of the step before,
 u^c = ũ + β Δt² ü^c and u̇^c = ṽ + γ Δt ü^c (N12 (16), (17)) turn N12 (1) into
 
-.. math:: A ü^c = (1+α) F^c - α F^p - C [(1+α) ṽ - α u̇^p] - K [(1+α) ũ - α u^p], \\qquad
+.. math:: A ü^c = (1+α) F^c - α F^p - C [(1+α) ṽ - α u̇^p] - K [(1+α) ũ - α u^p], \qquad
           A = M + (1+α) γ Δt C + (1+α) β Δt² K
 
 A is N12's K̄ (22) times β Δt²: the same method in another unknown. It needs no product with M, keeps the
@@ -96,12 +96,7 @@ class Integrator:
         self.u_from_a, self.v_from_a = beta * dt**2, gamma * dt
         self._u_old, self._v_old = (0.5 - beta) * dt**2, (1.0 - gamma) * dt
         self.effective = self._effective_matrix()
-        self.factor: Factor = factorize(self.effective, kind=solver)
-        if matrices.C_low_rank is not None:
-            scaled = LowRank(
-                matrices.C_low_rank.vectors, self.weight_c * self.v_from_a * matrices.C_low_rank.coefficients
-            )
-            self.factor = UpdatedFactor(self.factor, scaled)
+        self.factor = self.factor_of(self.effective, solver)
         self._K = _operand(matrices.K)
         self._C = None if matrices.C is None else _operand(matrices.C)
 
@@ -116,6 +111,15 @@ class Integrator:
         if m.C is not None:
             effective = effective + (self.weight_c * self.v_from_a) * m.C
         return sp.csr_array(effective)
+
+    def factor_of(self, effective: sp.csr_array, solver: str = "auto") -> Factor:
+        """Factor of an effective matrix (n, n), the low-rank damping included."""
+        factor = factorize(effective, kind=solver)
+        low_rank = self.matrices.C_low_rank
+        if low_rank is None:
+            return factor
+        scaled = LowRank(low_rank.vectors, self.weight_c * self.v_from_a * low_rank.coefficients)
+        return UpdatedFactor(factor, scaled)
 
     def predict(self, state: State, force: FloatArray) -> None:
         """Advance the state in place as if the force were all.

@@ -1,10 +1,10 @@
-"""Straight prismatic beams in space, Euler-Bernoulli or Timoshenko.
+r"""Straight prismatic beams in space, Euler-Bernoulli or Timoshenko.
 
 One formulation serves both theories and two and three dimensions. Bending in each principal plane
 uses the exact static solution of the shear-flexible beam as interpolation (Przemieniecki 1968,
 Friedman and Kosmatka 1993): with Φ = 12 EI / (κGA L²) and ξ = x / L,
 
-.. math:: w(ξ) = N(ξ) [w_1, ψ_1, w_2, ψ_2]^T, \\qquad ψ(ξ) = P(ξ) [w_1, ψ_1, w_2, ψ_2]^T
+.. math:: w(ξ) = N(ξ) [w_1, ψ_1, w_2, ψ_2]^T, \qquad ψ(ξ) = P(ξ) [w_1, ψ_1, w_2, ψ_2]^T
 
 which is free of shear locking and becomes Hermite's cubic for Φ = 0. Stiffness, consistent mass (with
 rotary inertia), loads and the running line all use these same polynomials.

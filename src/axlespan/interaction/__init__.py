@@ -1,0 +1,1 @@
+"""Crossings and how they are simulated: the direct method and its rivals."""

@@ -1,6 +1,6 @@
-"""The small contact system: S X = gap, for all wheels whose vehicles touch the structure.
+r"""The small contact system: S X = gap, for all wheels whose vehicles touch the structure.
 
-.. math:: S = (1+α) β Δt² \\Big( I_X A_v^{-1} I_X^T + E A_s^{-1} E^T \\Big)
+.. math:: S = (1+α) β Δt² \Big( I_X A_v^{-1} I_X^T + E A_s^{-1} E^T \Big)
 
 It is symmetric positive definite and changes from step to step only through E. The rows of a stretch of
 steps are computed together, before the time loop reaches them.

@@ -148,15 +148,15 @@ class TensionMonitor:
         self.largest, self.smallest = np.full(n, -np.inf), np.full(n, np.inf)
         self.largest_at, self.smallest_at = np.zeros(n), np.zeros(n)
 
-    def look(self, stretch: Stretch, forces: FloatArray) -> None:
-        """Look at consecutive steps."""
-        times = self._plan.times_of(stretch.first + np.arange(stretch.n_step))
+    def look(self, steps: IntArray, positions: FloatArray, forces: FloatArray) -> None:
+        """Look at consecutive steps: positions and forces (n_step, n_contact)."""
+        times = self._plan.times_of(steps)
         self._peaks(times, forces)
         pulled = forces < 0.0
         for wheel in np.flatnonzero(
             pulled.any(axis=0) | np.isin(np.arange(forces.shape[1]), list(self._open))
         ):
-            self._episodes_of(int(wheel), times, forces[:, wheel], stretch.positions[:, wheel])
+            self._episodes_of(int(wheel), times, forces[:, wheel], positions[:, wheel])
 
     def _peaks(self, times: FloatArray, forces: FloatArray) -> None:
         top, bottom = forces.argmax(axis=0), forces.argmin(axis=0)
@@ -194,7 +194,7 @@ class TensionMonitor:
 
 
 class EnergyMonitor:
-    """Energy balance over single steps, sampled over the run.
+    r"""Energy balance over single steps, sampled over the run.
 
     Over one step the kinetic and strain energy change by the work of the applied and contact forces, less
     what damping and the alpha method take. With the Newmark kinematics (N12 (16), (17)) the kinetic energy

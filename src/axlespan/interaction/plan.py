@@ -20,9 +20,13 @@ from axlespan.model.system import System
 from axlespan.running.path import PolynomialPath
 from axlespan.running.structure import Structure
 from axlespan.vehicles.train import Train
+from axlespan.vehicles.vehicle import Vehicle
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
+
+# Fewest steps per shortest period of a vehicle, and per crossing of a wheel; below, results say nothing.
+_STEPS_PER_PERIOD, _STEPS_PER_CROSSING = 4, 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +59,7 @@ class Plan:
     fleet: Fleet
     rows: TrainRows
     sensor_path: PolynomialPath  # of the first line, free d.o.f.
+    sensor_path_moving: PolynomialPath  # the same in the prescribed d.o.f. that move
     moving: IntArray  # (n_moving,) prescribed d.o.f. that move or are set down
 
     @property
@@ -75,7 +80,8 @@ def plan_for(crossing: Crossing, settings: Settings) -> Plan:
     InputError
         If a wheel's line is unknown, no wheel is ever on the structure, or a sensor is off it.
     """
-    system = crossing.structure.system
+    crossing.structure.require_stable()
+    system, line = crossing.structure.system, crossing.structure.line()
     moving = np.array(
         [
             j
@@ -91,9 +97,11 @@ def plan_for(crossing: Crossing, settings: Settings) -> Plan:
         forces=AppliedForces.of(system),
         fleet=fleet_of(crossing.train, crossing.gravity),
         rows=_train_rows(crossing, settings, moving),
-        sensor_path=_split(next(iter(crossing.structure.lines.values())), system, system.free),
+        sensor_path=_split(line, system, system.free),
+        sensor_path_moving=_split(line, system, system.prescribed[moving]),
         moving=moving,
     )
+    _check_time_step(plan)
     _check_reach(plan)
     _check_sensors(crossing.structure, settings)
     return plan
@@ -118,6 +126,7 @@ def fleet_of(train: Train, gravity: float) -> Fleet:
     for i, item in enumerate(train.placements):
         vehicle = item.vehicle
         if vehicle.system is not None:
+            _check_vehicle(vehicle)
             own = kinds.setdefault(id(vehicle), matrices_of(vehicle.system))
             blocks.append(own)
             names += [f"{i + 1}.{vehicle.system.free_name(j)}" for j in range(own.size)]
@@ -135,6 +144,17 @@ def fleet_of(train: Train, gravity: float) -> Fleet:
         np.array(owner, dtype=index),
         tuple(names),
     )
+
+
+def _check_vehicle(vehicle: Vehicle) -> None:
+    """Vehicles carry no loads of their own yet, and their supports stand still."""
+    assert vehicle.system is not None
+    moves = any(not (isinstance(m, Constant) and m.amount == 0.0) for m in vehicle.system.motions)
+    if vehicle.system.loads or moves:
+        what = "loads" if vehicle.system.loads else "supports that move"
+        raise InputError(
+            f"has {what}, which are not supported in vehicles", field="vehicle", value=vehicle.name
+        )
 
 
 def _block_diagonal(blocks: Sequence[Matrices]) -> Matrices:
@@ -175,6 +195,31 @@ def _split(path: PolynomialPath, system: System, keep: IntArray) -> PolynomialPa
     return path.renumbered(number)
 
 
+def _check_time_step(plan: Plan) -> None:
+    """The time step must resolve the vehicles, and the train must not leap over the structure."""
+    dt = plan.settings.time_step
+    for vehicle in {id(item.vehicle): item.vehicle for item in plan.crossing.train.placements}.values():
+        frequencies = vehicle.frequencies() if vehicle.is_multibody else np.empty(0)
+        if len(frequencies) and dt * frequencies.max() > 1.0 / _STEPS_PER_PERIOD:
+            period = 1.0 / frequencies.max()
+            raise InputError(
+                f"is too long: {period / dt:.3g} steps per shortest period of vehicle '{vehicle.name}' ({period:.4g} s); "
+                f"at least {_STEPS_PER_PERIOD} are needed",
+                field="time_step",
+                value=f"{dt:g} s",
+                fix=f"Use {period / 40.0:.1g} s or less",
+            )
+    leap = dt * float(np.max(plan.crossing.motion.speeds))
+    length = plan.crossing.structure.length
+    if leap > length / _STEPS_PER_CROSSING:
+        raise InputError(
+            f"is too long: a wheel advances {leap:.3g} m a step on a line of {length:g} m",
+            field="time_step",
+            value=f"{dt:g} s",
+            fix=f"Use {dt * length / leap / 200.0:.1g} s or less",
+        )
+
+
 def _check_reach(plan: Plan) -> None:
     """Some wheel must be on the structure at some time, or the run says nothing about it."""
     head = plan.crossing.start + plan.crossing.motion.distance(plan.times[[0, -1]])
@@ -190,7 +235,7 @@ def _check_reach(plan: Plan) -> None:
 
 
 def _check_sensors(structure: Structure, settings: Settings) -> None:
-    path = next(iter(structure.lines.values()))
+    path = structure.line()
     for name, position in settings.sensors.items():
         if not path.start <= position <= path.stop:
             raise InputError(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -63,6 +64,8 @@ class Recorder:
             np.concatenate([self._sensor_dofs.ravel(), self.reactions.free_dofs]), return_inverse=True
         )
         self.completed = 0  # time index of the last good step
+        self.finite = True
+        self._pending: tuple[Stretch, int] | None = None  # a stretch that is not worked up yet
         self._buffer_steps = 0
 
     def _sensors(self) -> tuple[IntArray, FloatArray]:
@@ -78,8 +81,9 @@ class Recorder:
         self._allocate(1)
         self._take(0, structure, fleet, forces)
         self.energy.begin(structure, fleet)
-        positions = self.plan.rows.positions(np.zeros(1))
-        self._keep(np.zeros(1, dtype=np.int64), positions)
+        zero, positions = np.zeros(1, dtype=np.int64), self.plan.rows.positions(np.zeros(1))
+        self._keep(zero, positions)
+        self.tension.look(zero, positions, self._forces)
 
     def step(
         self, stretch: Stretch, k: int, structure: StructureBody, fleet: FleetBody | None, forces: FloatArray
@@ -88,6 +92,7 @@ class Recorder:
         if k == 0:
             self._allocate(stretch.n_step)
         self._take(k, structure, fleet, forces)
+        self._pending = (stretch, k + 1)
         self.energy.step(stretch, k, structure, fleet, forces)
         if fleet is not None and k == stretch.n_step - 1:
             self.compatibility.look(stretch, k, structure, fleet)
@@ -100,16 +105,28 @@ class Recorder:
         AnalysisError
             If a value is not finite or the contact forces have run away.
         """
-        steps = stretch.first + np.arange(stretch.n_step)
-        bad = self._first_bad(stretch.n_step)
-        if bad is not None:
-            good = np.arange(bad)
-            self._keep(steps[good], stretch.positions[good])
-            self._raise_for(int(steps[bad]), bad)
-        self._keep(steps, stretch.positions)
-        self.tension.look(stretch, self._forces)
+        self._work_up(stretch, stretch.n_step)
         if self._progress is not None:
             self._progress(self.completed)
+
+    def salvage(self) -> None:
+        """Keep the good steps of a stretch that was broken off."""
+        if self._pending is not None:
+            stretch, n_step = self._pending
+            with suppress(AnalysisError):
+                self._work_up(stretch, n_step)
+
+    def _work_up(self, stretch: Stretch, n_step: int) -> None:
+        self._pending = None
+        steps = stretch.first + np.arange(n_step)
+        bad = self._first_bad(n_step)
+        n_good = n_step if bad is None else bad
+        if n_good:
+            self._keep(steps[:n_good], stretch.positions[:n_good])
+            self.tension.look(steps[:n_good], stretch.positions[:n_good], self._forces[:n_good])
+        if bad is not None:
+            self.finite = False
+            self._raise_for(int(steps[bad]), bad)
 
     def _allocate(self, n_step: int) -> None:
         if n_step != self._buffer_steps:
@@ -136,12 +153,11 @@ class Recorder:
 
     def _first_bad(self, n_step: int) -> int | None:
         limit = _DIVERGED * max(float(np.abs(self.plan.fleet.weight).max()), 1.0)
-        good = np.isfinite(self._vehicle_rows).all(axis=(0, 2)) & np.isfinite(self._structure_rows).all(
-            axis=(0, 2)
-        )
+        good = np.isfinite(self._vehicle_rows[:, :n_step]).all(axis=(0, 2))
+        good &= np.isfinite(self._structure_rows[:, :n_step]).all(axis=(0, 2))
         with np.errstate(invalid="ignore"):
-            good &= (np.abs(self._forces) < limit).all(axis=1)
-        good &= np.isfinite(self._sums).all(axis=1)
+            good &= (np.abs(self._forces[:n_step]) < limit).all(axis=1)
+        good &= np.isfinite(self._sums[:n_step]).all(axis=1)
         return None if good.all() else int(np.argmin(good))
 
     def _raise_for(self, step: int, k: int) -> None:
@@ -166,7 +182,7 @@ class Recorder:
         values = self._structure_rows[:, :n, self._inverse]
         n_sensor = self._sensor_dofs.size
         at_sensors = values[:, :, :n_sensor].reshape(3, n, *self._sensor_dofs.shape)
-        sensors = (at_sensors * self._sensor_weights).sum(axis=3)
+        sensors = (at_sensors * self._sensor_weights).sum(axis=3) + self._moved_sensors(steps)
         reactions = self.reactions.of(steps, values[:, :, n_sensor:], positions, self._forces[:n])
         self.balance.look(steps, self._sums[:n], reactions, positions, self._forces[:n])
         kept = np.flatnonzero(steps % self.every == 0)
@@ -178,6 +194,22 @@ class Recorder:
             h.vehicle[name][into] = self._vehicle_rows[i, kept]
             h.sensor[name][into] = sensors[i, kept]
         self.completed = int(steps[-1])
+
+    def _moved_sensors(self, steps: IntArray) -> FloatArray:
+        """What supports that move add at the sensors (3, n_step, n_sensor): E_P u_P and its rates."""
+        plan = self.plan
+        result = np.zeros((3, len(steps), len(self._sensor_dofs)))
+        if len(plan.moving) and len(self._sensor_dofs):
+            times = plan.times_of(steps)
+            rows = plan.sensor_path_moving.rows(
+                np.array(list(plan.settings.sensors.values())), len(plan.moving)
+            )
+            for i, name in enumerate(("value", "velocity", "acceleration")):
+                motions = [
+                    getattr(plan.crossing.structure.system.motions[j], name)(times) for j in plan.moving
+                ]
+                result[i] = (rows @ np.array(motions)).T
+        return result
 
     # --- at the end ----------------------------------------------------------------------------
 
@@ -209,7 +241,7 @@ class Recorder:
     def _checks(self) -> dict[str, Any]:
         tension, static = self.tension, self.plan.fleet.weight
         return {
-            "finite_values": True,
+            "finite_values": self.finite,
             "compatibility_residual": self.compatibility.residual,
             "equilibrium_residual": self.balance.residual,
             "energy_residual": self.energy.residual,

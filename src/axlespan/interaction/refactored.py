@@ -1,9 +1,9 @@
-"""The refactoring rival: contact condensed into the structure's matrix, assembled and factored at each step.
+r"""The refactoring rival: contact condensed into the structure's matrix, assembled and factored at each step.
 
 Eliminating the vehicles and the contact forces from N12 (35) adds the vehicles' dynamic stiffness to the
 structure's effective matrix, at the places where the wheels are:
 
-.. math:: \\Big( A_s + (1+α) β Δt^2 E^T k E \\Big) ü_s = b_s - (1+α) E^T k (E ũ + r - u_X)
+.. math:: \Big( A_s + (1+α) β Δt^2 E^T k E \Big) ü_s = b_s - (1+α) E^T k (E ũ + r - u_X)
 
 with k the inverse of the vehicles' compliance at their contact points. This is what N12's [11-13] do.
 """
@@ -20,7 +20,6 @@ from axlespan.interaction.march import bodies_of, forced_load, initial_path_load
 from axlespan.interaction.plan import Plan
 from axlespan.interaction.recorder import Recorder
 from axlespan.interaction.start import Start
-from axlespan.linalg.factor import factorize
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -84,7 +83,7 @@ def _condensed_step(
     stiffness = sp.csr_array(fleet.stiffness[np.ix_(into, into)])
     condensed = sp.csr_array(body.effective + (body.weight_c * body.u_from_a) * (E.T @ stiffness @ E))
     forces = (fleet.stiffness @ _with_line(gap, structure, dofs, weights, into))[into]
-    response = factorize(condensed).solve(-body.weight_c * (E.T @ forces))
+    response = body.factor_of(condensed).solve(-body.weight_c * (E.T @ forces))
     body.correct(structure.state, response)
 
 

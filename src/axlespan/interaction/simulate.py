@@ -62,7 +62,7 @@ def simulate(
         The direct method, its two rivals, or the direct method as N12 prints it (dense; for small models).
     footprint : float, optional
         Length [m] over which a wheel's contact is spread along the line. By default zero for massless
-        wheels, and for wheels with mass 0.3 m or 1 % of the line, whichever is less.
+        wheels, and for wheels with mass 1.2 m or 3 % of the line, whichever is less.
     solver : str
         Kind of factorization: "auto", "banded", "superlu", "pardiso", "cholmod".
     every : int
@@ -106,6 +106,7 @@ def run_plan(plan: Plan, progress: Callable[[int], None] | None = None) -> Resul
     try:
         structure, fleet = _MARCHES[plan.settings.coupling](plan, start, recorder)
     except AnalysisError as error:
+        recorder.salvage()
         outcome = Outcome("failed", str(error))
         facts = {"wall_time": time.perf_counter() - begun}
         raise AnalysisError(str(error), recorder.result(outcome, facts)) from error

@@ -1,12 +1,12 @@
-"""How a run starts: static equilibrium where the train stands, then what the motion along the line asks for.
+r"""How a run starts: static equilibrium where the train stands, then what the motion along the line asks for.
 
 At time zero each vehicle is in static equilibrium (the irregularity under its wheels included), its bodies
 have no vertical velocity, and its wheels have the velocity and acceleration of the line under them: the
 first and second time derivative of N12 (27) along s(t),
 
 .. math::
-   \\dot u_X &= \\dot s (r' + E' u) + E \\dot u \\\\
-   \\ddot u_X &= \\dot s^2 (r'' + E'' u) + \\ddot s (r' + E' u) + 2 \\dot s E' \\dot u + E \\ddot u
+   \dot u_X &= \dot s (r' + E' u) + E \dot u \\
+   \ddot u_X &= \dot s^2 (r'' + E'' u) + \ddot s (r' + E' u) + 2 \dot s E' \dot u + E \ddot u
 
 Accelerations and contact forces follow from the equations of motion and this constraint together.
 """
@@ -19,8 +19,8 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
 
-from axlespan.dynamics.integrator import Matrices, State
 from axlespan.contact.rows import RowBlock
+from axlespan.dynamics.integrator import Matrices, State
 from axlespan.interaction.plan import Fleet, Plan
 from axlespan.linalg.factor import Factor, factorize
 
@@ -184,11 +184,9 @@ def _accelerate(
 ) -> FloatArray:
     """Fill in the accelerations of both bodies; return the contact forces (n_contact,)."""
     fleet, x = plan.fleet, plan.fleet.coupled
-    known = np.zeros(len(static))
-    known[fleet.forced] = fleet.weight[fleet.forced]
     acceleration = float(plan.crossing.motion.acceleration(np.zeros(1))[0])
     out_of_balance = external - plan.structure.K @ structure.u - plan.structure.damping_force(structure.v)
-    out_of_balance -= rows.E.T @ known
+    out_of_balance -= rows.E.T @ static
     carried = _carried(rows.E)[x]
     still = not np.any(carried) and np.abs(out_of_balance).max(initial=0.0) <= 1e-9 * max(
         np.abs(external).max(initial=0.0), 1e-30
@@ -200,10 +198,10 @@ def _accelerate(
         if np.any(carried):
             columns = structure_mass.solve(np.ascontiguousarray(rows.E[x].T.toarray()))
     if not len(x):
-        return known
+        return static
     m = fleet.matrices
     net = -(m.K @ vehicles.u) - m.damping_force(vehicles.v)
-    net[fleet.dofs] -= fleet.weight[x]
+    net[fleet.dofs] += static[x] - fleet.weight[x]
     vehicle_mass = _mass_factor(m, plan)
     # The wheels' d.o.f. take the contact force; other massless d.o.f. are in balance already.
     free = vehicle_mass.solve(_where_mass(m, net, fleet.dofs))
@@ -217,11 +215,12 @@ def _accelerate(
         + 2.0 * speed * (rows.E1[x] @ structure.v)
     )
     system = responses[fleet.dofs] + rows.E[x] @ columns
-    forces = np.linalg.solve(system, wanted - free[fleet.dofs])
-    vehicles.a[:] = free + responses @ forces
-    structure.a -= columns @ forces
-    known[x] = forces
-    return known
+    change = np.linalg.solve(system, wanted - free[fleet.dofs])  # of the contact forces, from the static ones
+    vehicles.a[:] = free + responses @ change
+    structure.a -= columns @ change
+    forces = static.copy()
+    forces[x] += change
+    return forces
 
 
 def _mass_factor(matrices: Matrices, plan: Plan) -> Factor:

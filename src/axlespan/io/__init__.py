@@ -1,0 +1,1 @@
+"""Meshes, matrices and results, in and out of files."""

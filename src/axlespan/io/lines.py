@@ -172,7 +172,9 @@ def table_of(lines: Sequence[str], columns: int, separator: str | None = None) -
     Python objects for the millions of lines of a matrix.
     """
     text = "\n".join(lines)
-    if not text.isascii():
+    if not text:
+        return np.empty((0, columns))
+    if not text.isascii() or text.endswith("\n"):
         return None
     if separator:
         text = text.replace(separator, " ")
@@ -180,8 +182,8 @@ def table_of(lines: Sequence[str], columns: int, separator: str | None = None) -
     blank = codes <= 32
     begins = ~blank
     begins[1:] &= blank[:-1]
-    line = np.cumsum(codes == 10, dtype=np.int64)
-    if not np.all(np.bincount(line[begins], minlength=len(lines)) == columns):
+    first = np.concatenate([[0], np.flatnonzero(codes == 10) + 1])  # character of each line
+    if not np.all(np.add.reduceat(begins, first, dtype=np.int64) == columns):
         return None
     with warnings.catch_warnings():
         warnings.simplefilter("error", DeprecationWarning)  # how numpy says that a word is no number

@@ -86,7 +86,7 @@ class BandedFactor:
         if self._loop_is_faster(b) and (solver := compiled_solver()) is not None:
             if out is not b:
                 np.copyto(out, b)
-            rows = np.arange(self.n) if self._rows is None else self._rows
+            rows = np.arange(self.n, dtype=np.intp) if self._rows is None else self._rows
             solver(self._lower.T, rows, out)
             return out
         return self._scatter(dpbtrs(self._lower, self._gather(b), lower=1, overwrite_b=1)[0], out)
@@ -99,16 +99,19 @@ class BandedFactor:
     def forward(self, b: FloatArray, out: FloatArray | None = None) -> FloatArray:
         """Solve C y = b; see :class:`axlespan.linalg.SplitFactor`."""
         out = right_hand_side(b, self.n, out)
+        if b.size == 0:
+            return out
         y = dtbtrs(self._lower, self._gather(b), uplo="L", trans="N", overwrite_b=1)[0]
-        out.T[...] = y.T  # stays in the factor's order
+        np.copyto(out, y)  # stays in the factor's order
         return out
 
     def backward(self, b: FloatArray, out: FloatArray | None = None) -> FloatArray:
         """Solve Cᵀ x = b; see :class:`axlespan.linalg.SplitFactor`."""
         out = right_hand_side(b, self.n, out)
-        return self._scatter(
-            dtbtrs(self._lower, b.copy(order="F"), uplo="L", trans="T", overwrite_b=1)[0], out
-        )
+        if b.size == 0:
+            return out
+        x = dtbtrs(self._lower, b.copy(order="F"), uplo="L", trans="T", overwrite_b=1)[0]
+        return self._scatter(x, out)
 
     def _gather(self, b: FloatArray) -> FloatArray:
         """A copy of the right-hand sides in the order of elimination, columns contiguous for LAPACK."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+from functools import cache
 from typing import Any, NoReturn
 
 import numpy as np
@@ -17,6 +18,7 @@ from axlespan.linalg.protocol import refuse_pickling
 _A, _L, _LT, _P, _PT = 0, 4, 5, 7, 8
 
 
+@cache
 def installed() -> bool:
     """Whether cvxopt is there."""
     return importlib.util.find_spec("cvxopt") is not None

@@ -60,7 +60,7 @@ def lowest_modes(
     mass : sparse array or ndarray, shape (n, n)
         M, symmetric and positive semidefinite.
     count : int, optional
-        Number of modes; all when left out.
+        Number of modes; all when left out, which is for a few thousand d.o.f. at most.
     kind, threads
         The factor, see :func:`axlespan.linalg.factorize`.
 

@@ -70,11 +70,15 @@ def _active(model: Model) -> npt.NDArray[np.bool_]:
     active = np.zeros((len(model.points), len(COMPONENTS)), dtype=bool)
     for part in model.parts:
         active[np.unique(part.nodes)[:, None], component_indices(part.components)] = True
-    for tie in model.ties:
-        if active[tie.slave[0], COMPONENTS.index(tie.slave[1])]:
+    waiting = list(model.ties)
+    while True:  # masters of active slaves are active; a master may be a slave itself
+        ready = [tie for tie in waiting if active[tie.slave[0], COMPONENTS.index(tie.slave[1])]]
+        if not ready:
+            return active
+        waiting = [tie for tie in waiting if tie not in ready]
+        for tie in ready:
             for node, component, _ in tie.masters:
                 active[node, COMPONENTS.index(component)] = True
-    return active
 
 
 def _number(table: DofTable, node: int, component: str) -> int:
@@ -160,8 +164,8 @@ def _with_modal_damping(system: System, damping: Damping | None) -> System:
     if not isinstance(damping, Modal) or damping.ratio == 0.0:
         return system
     blocks, n = system.partition, len(system.free)
-    count = damping.modes or (n if n <= _ALL_MODES_UP_TO else _MODES_OF_A_LARGE_MODEL)
-    modes = lowest_modes(blocks.K_FF, blocks.M_FF, min(count, n))
+    count = damping.modes or (None if n <= _ALL_MODES_UP_TO else _MODES_OF_A_LARGE_MODEL)
+    modes = lowest_modes(blocks.K_FF, blocks.M_FF, count)
     omega = modes.angular_frequencies
     low_rank = LowRank(np.ascontiguousarray(blocks.M_FF @ modes.shapes), 2.0 * damping.ratio * omega)
     return replace(system, modal_damping=low_rank)

@@ -24,6 +24,8 @@ class Rayleigh:
     def from_ratio(cls, ratio: float, frequencies: tuple[float, float]) -> Rayleigh:
         """Give the same damping ratio [-] at two frequencies [Hz]."""
         require_positive(ratio, "damping.ratio", zero=True)
+        if len(frequencies) != 2:
+            raise InputError("must be two frequencies", field="damping.frequencies", value=tuple(frequencies))
         low, high = (2.0 * math.pi * require_positive(f, "damping.frequencies") for f in frequencies)
         if low == high:
             raise InputError(

@@ -82,7 +82,15 @@ class Model:
         if self.plane and np.any(new[:, 1] != 0.0):
             raise InputError("must have y = 0 in a plane model", field="node coordinates")
         labels = dict(self.node_names)
+        if len(names or ()) > len(new):
+            raise InputError(
+                f"must be at most one for each of the {len(new)} nodes",
+                field="names",
+                value=list(names or ()),
+            )
         for i, name in enumerate(names or ()):
+            if name[:1] == "n" and name[1:].isdigit() and int(name[1:]) != len(self.points) + i + 1:
+                raise InputError("is the name of another node by its number", field="node", value=name)
             if name in labels:
                 raise InputError("is already the name of a node", field="node", value=name)
             labels[name] = len(self.points) + i
@@ -215,10 +223,16 @@ class Model:
         require_positive(mass, "mass", zero=True)
         for component, value in moments.items():
             require_positive(value, f"inertia {component}", zero=True)
-        translations = tuple(directions or (("x", "z") if self.plane else ("x", "y", "z")))
+        translations = tuple(directions or self._translations_at(self.node(node)))
         components = (*translations, *(part for part in COMPONENTS[3:] if part in moments))
         values = [[mass] * len(translations) + [moments[part] for part in components[len(translations) :]]]
         return self.with_part(MassPart(name, np.array([[self.node(node)]]), np.array(values), components))
+
+    def _translations_at(self, node: int) -> tuple[str, ...]:
+        """Directions in which a node moves: those of the elements that it has, all if it has none yet."""
+        there = {part for item in self.parts if np.any(item.nodes == node) for part in item.components}
+        every = ("x", "z") if self.plane else ("x", "y", "z")
+        return tuple(part for part in every if not there or part in there)
 
     # --- ties, supports, loads, damping ---------------------------------------------------------
 
@@ -268,6 +282,10 @@ class Model:
         index, label = self.node(node), name or self.node_label(self.node(node))
         moved, elastic = dict(motion or {}), {*(stiffness or {}), *(damping or {})}
         component_indices((*fixed, *moved, *elastic))
+        held = [*fixed, *elastic] if not moved else [*fixed, *(set(elastic) | set(moved))]
+        if len(set(held)) < len(held):
+            twice = next(part for part in held if held.count(part) > 1)
+            raise InputError("is held in two ways at once", field="support", value=f"{label}.{twice}")
         model, ground = self, index
         if elastic:
             model = model.with_nodes(self.points[index][None], [f"{label}:ground"])
@@ -281,7 +299,10 @@ class Model:
             if part in {*fixed, *moved, *elastic}
         ]
         taken = {(support.node, support.component) for support in model.supports}
+        named = {support.name for support in model.supports}
         for entry in entries:
+            if entry.name in named:
+                raise InputError("is already the name of a support", field="support", value=entry.name)
             if (entry.node, entry.component) in taken:
                 raise InputError("is supported twice", field="support", value=entry.name)
         return replace(model, supports=(*model.supports, *entries))

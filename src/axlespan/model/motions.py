@@ -8,7 +8,7 @@ from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import CubicSpline, PPoly
 
 from axlespan.errors import InputError
 
@@ -75,10 +75,7 @@ class HarmonicMotion:
 
 
 class TableMotion:
-    """A displacement history through given points, as a natural cubic spline; constant outside them.
-
-    The spline has a continuous acceleration, which prescribed supports with mass need; a table that
-    jumps in slope asks for an impulse and is smoothed over its neighboring points.
+    """A displacement history through given points, constant outside them.
 
     Parameters
     ----------
@@ -86,31 +83,37 @@ class TableMotion:
         Strictly increasing [s].
     values : sequence of float
         Displacements [m or rad].
+    smooth : bool
+        False: linear between the points; the velocity then jumps at them, and the impulses that this
+        asks of a moving mass are left out. True: a cubic spline, at rest at both ends; right for measured
+        ground motion, whose acceleration matters.
+
+    Raises
+    ------
+    InputError
+        If there are fewer than two points, times don't increase or a value is not finite.
     """
 
-    def __init__(self, times: Sequence[float], values: Sequence[float]) -> None:
+    def __init__(self, times: Sequence[float], values: Sequence[float], *, smooth: bool = False) -> None:
         t, u = np.asarray(times, float), np.asarray(values, float)
         if t.ndim != 1 or t.shape != u.shape or len(t) < 2:
             raise InputError("must be at least two pairs of time and value", field="motion")
         if not (np.all(np.isfinite(t)) and np.all(np.isfinite(u))):
             raise InputError("must be finite", field="motion")
         if np.any(np.diff(t) <= 0.0):
-            raise InputError(
-                "must have strictly increasing times",
-                field="motion",
-                value=float(t[1 + np.argmin(np.diff(t))]),
-            )
+            late = float(t[1 + np.argmin(np.diff(t))])
+            raise InputError("must have strictly increasing times", field="motion", value=late)
         self.times, self.values = t, u
-        # Clamped ends: at rest before the first and after the last point.
-
-        self._spline = CubicSpline(t, u, bc_type="clamped")
+        if smooth:
+            self._curve: CubicSpline | PPoly = CubicSpline(t, u, bc_type="clamped")
+        else:
+            self._curve = PPoly(np.array([np.diff(u) / np.diff(t), u[:-1]]), t)
 
     def _inside(self, time: FloatArray, order: int) -> FloatArray:
         time = np.asarray(time, float)
-        clipped = np.clip(time, self.times[0], self.times[-1])
-        result = np.asarray(self._spline(clipped, order))
+        result = np.asarray(self._curve(np.clip(time, self.times[0], self.times[-1]), order))
         if order:
-            result = np.where((time >= self.times[0]) & (time <= self.times[-1]), result, 0.0)
+            result = np.where((time >= self.times[0]) & (time < self.times[-1]), result, 0.0)
         return result
 
     def value(self, time: FloatArray) -> FloatArray:

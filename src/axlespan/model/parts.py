@@ -73,8 +73,9 @@ class BeamPart:
 
     def matrices(self, points: FloatArray) -> ElementMatrices:
         """Element matrices, reduced to the part's components."""
-        ends, frame = self.coordinates(points), self.frame(points)
+        ends = self.coordinates(points)
         self._check(ends)
+        frame = self.frame(points)
         keep = self.kept()
         pick = np.ix_(np.arange(len(ends)), keep, keep)
         k = beam.stiffness(ends, self.properties, frame)

@@ -64,9 +64,13 @@ class System:
     motions: tuple[Motion, ...] = ()  # (n_P,)
     loads: tuple[Load, ...] = ()
     modal_damping: LowRank | None = None  # over the free d.o.f.
-    independent: IntArray = field(
-        default_factory=lambda: np.empty(0, dtype=np.int64)
-    )  # (n,) positions in dof_names
+    independent: IntArray = field(default_factory=lambda: np.empty(0, dtype=np.int64))  # (n,) in dof_names
+    components: tuple[str, ...] = ()  # (n_full,) x, y, …, rz; from the names when left out
+
+    def __post_init__(self) -> None:
+        if not self.components:
+            parts = tuple(name.rsplit(".", 1)[-1] for name in self.dof_names)
+            object.__setattr__(self, "components", parts)
 
     @property
     def size(self) -> int:
@@ -113,9 +117,7 @@ class System:
 
     def translation(self, component: str) -> FloatArray:
         """Rigid translation (n,) by 1 along a component, of all independent d.o.f."""
-        suffix = "." + component
-        hits = [self.dof_names[i].endswith(suffix) for i in self.independent]
-        return np.array(hits, dtype=float)
+        return np.array([self.components[i] == component for i in self.independent], dtype=float)
 
     def total_mass(self, component: str = "z") -> float:
         """Mass [kg] that moves with a rigid translation along a component."""

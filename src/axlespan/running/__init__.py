@@ -1,0 +1,1 @@
+"""Running lines: where wheels run, in the degrees of freedom of a structure."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 
 import numpy as np
@@ -52,7 +53,7 @@ def path_on_beams(
             "must have at least two nodes", field="running line", value=[str(node) for node in nodes]
         )
     owners = _beams_by_ends(model)
-    segments = [_segment(model, owners, a, b) for a, b in zip(chain[:-1], chain[1:], strict=True)]
+    segments = [_segment(model, owners, a, b) for a, b in itertools.pairwise(chain)]
     sizes = np.linalg.norm(np.diff(model.points[chain], axis=0), axis=1)
     breaks = start + np.concatenate([[0.0], np.cumsum(sizes)])
     parts = {id(part): part for part, _, _ in segments}

@@ -1,8 +1,8 @@
-"""A path as piecewise polynomials: the displacement under a wheel in the structure's d.o.f.
+r"""A path as piecewise polynomials: the displacement under a wheel in the structure's d.o.f.
 
 At the position s along the path, inside segment e with ξ = (s - s_e) / h_e,
 
-.. math:: u_Y(s) = \\sum_j \\Big( \\sum_p c_{ejp} ξ^p \\Big) u_{d(e, j)}
+.. math:: u_Y(s) = \sum_j \Big( \sum_p c_{ejp} ξ^p \Big) u_{d(e, j)}
 
 These weights are a row of N12's E (28), and D = Eᵀ: the load of a unit force at s. Every kind of
 structure gives such a path, so contact, sensors and footprints need to know only this.
@@ -119,7 +119,7 @@ class PolynomialPath:
 
 def _stack(dofs: IntArray, coefficients: FloatArray, n: int) -> sp.csr_array:
     """Coefficients as a sparse matrix (n_segment · n_power, n)."""
-    n_segment, n_local, n_power = coefficients.shape
+    n_segment, _n_local, n_power = coefficients.shape
     row = np.arange(n_segment)[:, None, None] * n_power + np.arange(n_power)[None, None, :]
     row = np.broadcast_to(row, coefficients.shape)
     column = np.broadcast_to(dofs[:, :, None], coefficients.shape)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
 from axlespan.errors import InputError
+from axlespan.linalg.factor import NotPositiveDefinite, factorize
 from axlespan.model.dofs import nearest
 from axlespan.model.model import Model
 from axlespan.model.system import System
@@ -38,7 +40,7 @@ class Structure:
             raise InputError("must have at least one running line", field="structure", value=self.name)
 
     def line(self, name: str = MAIN_LINE) -> PolynomialPath:
-        """A running line by name; a structure with a single line needs none.
+        """A running line by name; the first one stands in for the main line.
 
         Raises
         ------
@@ -47,12 +49,44 @@ class Structure:
         """
         if name in self.lines:
             return self.lines[name]
-        if name == MAIN_LINE and len(self.lines) == 1:
+        if name == MAIN_LINE:
             return next(iter(self.lines.values()))
         raise nearest(name, list(self.lines), "running line")
 
     @property
     def length(self) -> float:
         """Length of the first running line [m]."""
-        path = next(iter(self.lines.values()))
+        path = self.line()
         return path.stop - path.start
+
+    def require_stable(self) -> None:
+        """Check, once for a structure, that its supports hold it.
+
+        Raises
+        ------
+        InputError
+            If it is a mechanism, moves freely as a whole or has parts without support; d.o.f. are named.
+        """
+        if not self._is_stable:
+            raise InputError("must be held by its supports", field="structure", value=self.name)
+
+    @cached_property
+    def _is_stable(self) -> bool:
+        if not len(self.system.free):
+            raise InputError("has no free degree of freedom", field="structure", value=self.name)
+        try:
+            factorize(self.system.partition.K_FF)
+        except NotPositiveDefinite as error:
+            names = ", ".join(self.system.free_name(int(i)) for i in error.suspects[:6])
+            what = {
+                "disconnected": "has a part that no support holds",
+                "mechanism": "is a mechanism",
+                "indefinite": "has a stiffness matrix that is not positive definite",
+            }.get(error.kind, "is not stable")
+            raise InputError(
+                f"{what}: it can move freely at {names}",
+                field="structure",
+                value=self.name,
+                fix="Support these degrees of freedom, or connect the part that they belong to",
+            ) from error
+        return True

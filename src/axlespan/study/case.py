@@ -1,4 +1,4 @@
-"""The case file: what is crossed by what, how, and what is wanted of it. Values are in SI units, and frozen."""
+"""The case file: what is crossed by what, how, and what is wanted of it; in SI units, and frozen."""
 
 from __future__ import annotations
 
@@ -20,12 +20,13 @@ from axlespan.units import LENGTH, TIME, show
 class Case(Part):
     """A case: a train crosses a structure.
 
-    Build one from a file with :func:`axlespan.study.load_case`, or from a mapping with ``Case.model_validate``.
+    Read one from a file with :func:`axlespan.study.load_case`, or make one by ``Case.model_validate`` of a
+    mapping with the keys of the file.
     """
 
     title: Text = ""
     """What this case is."""
-    structure: Structure
+    structure: Annotated[Structure, Field(examples=["{kind: simple-span, length: 25 m, ...}"])]
     """What is crossed."""
     train: Annotated[tuple[Entry, ...], Field(examples=["[{vehicle: ice3, count: 8}]"])]
     """What crosses it: entries of equal vehicles, from the head of the train."""

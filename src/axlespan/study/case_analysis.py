@@ -8,14 +8,18 @@ from typing import Annotated, Any, Final, Literal, Self
 from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, model_validator
 
 from axlespan.errors import InputError
-from axlespan.study.checks import Location, Measured, OneOf, Part, Several
+from axlespan.study.check_lists import Several
+from axlespan.study.checks import Location, Measured, OneOf, Part
+from axlespan.study.faults import listed
 from axlespan.study.kinds import LIST, MAPPING, Kinds, list_or_mapping, tag
 from axlespan.study.quantities import Count, Duration, Factor, Flag, Footprint, Gravity, Stiffness, Text
-from axlespan.units import HERTZ_STIFFNESS, RATIO, TIME
+from axlespan.units import HERTZ_STIFFNESS, NUMBER, TIME
 
 METHODS: Final = ("direct", "iterative", "refactored")
 BASES: Final = ("full", "reduced")
 CONTACTS: Final = ("rigid", "unilateral", "hertz", "linear-spring")
+AVAILABLE_BASES: Final = ("full",)
+AVAILABLE_CONTACTS: Final = ("rigid",)
 SOLVERS: Final = ("auto", "banded", "superlu", "pardiso", "cholmod")
 AUTO: Final = "auto"
 
@@ -80,11 +84,11 @@ class Analysis(Part):
     """Number of time steps."""
     duration: Duration | None = None
     """Time that is simulated, in place of steps; rounded up to whole steps."""
-    alpha: Annotated[float, Measured(RATIO, at_least=-1.0 / 3.0, at_most=0.0)] = 0.0
-    """Numerical damping, N12 (1): 0 is none, -1/3 the most; wheels with mass need some, such as -0.1."""
-    beta: Annotated[float, Measured(RATIO, above=0.0, at_most=1.0)] | None = None
+    alpha: Annotated[float, Measured(NUMBER, at_least=-1.0 / 3.0, at_most=0.0)] | None = None
+    """Numerical damping, N12 (1): from 0, none, to -1/3; when left out, some where wheels have mass."""
+    beta: Annotated[float, Measured(NUMBER, above=0.0, at_most=1.0)] | None = None
     """Parameter of N12 (17); (1 - alpha)^2 / 4 when left out."""
-    gamma: Annotated[float, Measured(RATIO, above=0.0, at_most=2.0)] | None = None
+    gamma: Annotated[float, Measured(NUMBER, above=0.0, at_most=2.0)] | None = None
     """Parameter of N12 (16); 1/2 - alpha when left out."""
     method: Annotated[str, OneOf(METHODS)] = "direct"
     """How structure and vehicles are solved together."""
@@ -102,7 +106,7 @@ class Analysis(Part):
     """Length over which a wheel spreads its force; 0 for a point."""
     tolerance: Factor | None = None
     """Of the iterative method: change of the contact forces, relative to the largest, at which it stops."""
-    relaxation: Annotated[float, Measured(RATIO, above=0.0, at_most=1.0)] | None = None
+    relaxation: Annotated[float, Measured(NUMBER, above=0.0, at_most=1.0)] | None = None
     """Of the iterative method: share of the new contact forces that is taken over."""
     max_iterations: Count | None = None
     """Of the iterative method."""
@@ -128,6 +132,14 @@ class Analysis(Part):
             raise InputError(
                 f"takes {self.step_count:.0e} steps", field="duration", fix="Use a longer time step"
             )
+        for name, word, available in (
+            ("basis", self.basis, AVAILABLE_BASES),
+            ("contact", self.contact.kind, AVAILABLE_CONTACTS),
+        ):
+            if word not in available:
+                raise InputError(
+                    f"{word} is not available in this version", field=name, fix=f"Write {listed(available)}"
+                )
         for name, key, wanted in (
             ("tolerance", "method", "iterative"),
             ("relaxation", "method", "iterative"),

@@ -9,7 +9,8 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BeforeValidator, ConfigDict, Field, ValidationInfo, field_validator, model_validator
 
 from axlespan.errors import InputError
-from axlespan.study.checks import Measured, Part, Several, Table
+from axlespan.study.check_lists import Several, Table
+from axlespan.study.checks import Measured, Part
 from axlespan.study.faults import listed, nearest
 from axlespan.study.kinds import ExistingFile, Kinds, tag
 from axlespan.study.quantities import (

@@ -9,7 +9,8 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Discriminator, Field
 
 from axlespan.errors import InputError
-from axlespan.study.checks import Measured, Part, Several
+from axlespan.study.check_lists import Several
+from axlespan.study.checks import Measured, Part
 from axlespan.study.kinds import Kinds, tag
 from axlespan.study.quantities import DampingRatio, Rate
 from axlespan.units import FREQUENCY, TIME
@@ -42,7 +43,7 @@ class RayleighRatio(Part):
     """The two frequencies, the lower one first."""
 
     def coefficients(self) -> tuple[float, float]:
-        """Return alpha [1/s] and beta [s]: ratio = alpha / (2 w) + beta w / 2 at both circular frequencies w."""
+        """Return alpha [1/s] and beta [s]: ratio = alpha / (2 w) + beta w / 2 at both w."""
         low, high = (math.tau * frequency for frequency in self.frequencies)
         beta = 2.0 * self.ratio / (low + high)
         return beta * low * high, beta

@@ -11,7 +11,8 @@ from pydantic import Discriminator, Field, model_validator
 from axlespan.errors import InputError
 from axlespan.study.case_damping import StructuralDamping
 from axlespan.study.case_support import Support
-from axlespan.study.checks import Measured, Part, Several
+from axlespan.study.check_lists import Several
+from axlespan.study.checks import Measured, Part
 from axlespan.study.faults import InputErrors, listed, nearest
 from axlespan.study.kinds import ExistingFile, tag
 from axlespan.study.quantities import (
@@ -23,7 +24,7 @@ from axlespan.study.quantities import (
     Text,
     Thickness,
 )
-from axlespan.units import LENGTH, RATIO
+from axlespan.units import LENGTH, NUMBER
 
 File = Annotated[Path, ExistingFile(), Field(examples=["bridge.msh"])]
 Point = Annotated[tuple[float, ...], Several(Measured(LENGTH), exactly=3, example="[0 m, 0 m, 0 m]")]
@@ -61,7 +62,7 @@ class Section(Part):
     shear_area_z: Area | None = None
     """Of Timoshenko beams."""
     orientation: (
-        Annotated[tuple[float, ...], Several(Measured(RATIO), exactly=3, example="[0, 0, 1]")] | None
+        Annotated[tuple[float, ...], Several(Measured(NUMBER), exactly=3, example="[0, 0, 1]")] | None
     ) = None
     """Of beams: a vector in the local x-z plane; vertical when left out."""
 
@@ -132,7 +133,7 @@ class MeshStructure(Mesh):
 
 
 class MatricesLine(Part):
-    """Where wheels run on a structure given by matrices: vertical d.o.f. along the line and their positions."""
+    """Where wheels run on a structure of matrices: vertical d.o.f. along the line and their positions."""
 
     dofs: tuple[Text, ...] | None = None
     """Numbers (from 0) or names of the vertical d.o.f., in the direction of travel."""

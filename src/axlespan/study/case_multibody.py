@@ -59,7 +59,7 @@ class Suspension(Part):
     damping: Dashpot = 0.0
     """Damping of the dashpot."""
     at: Length | None = None
-    """Distance behind the first wheel; where left out it stands at the wheel, or at the second body's center."""
+    """Distance behind the first wheel; when left out, at the wheel or at the center of the second body."""
 
 
 class Multibody(Placed):
@@ -94,7 +94,8 @@ class Multibody(Placed):
         )
         named = self.model_copy(update={"wheels": wheels})
         named._check_names()
-        where = {part.name: part.position for part in (*named.bodies, *wheels)}
+        where: dict[str | None, float] = {body.name: body.position for body in self.bodies}
+        where |= {wheel.name: wheel.position for wheel in wheels}
         hold = {wheel.name for wheel in wheels}
         suspensions = tuple(
             suspension
@@ -125,7 +126,7 @@ class Multibody(Placed):
                 raise InputError("must be behind the wheel before", field=f"wheels.{number}.position")
 
     def _check_names(self) -> None:
-        names = [part.name for part in (*self.bodies, *self.wheels)]
+        names = [*(body.name for body in self.bodies), *(wheel.name or "" for wheel in self.wheels)]
         fields = [
             *(f"bodies.{n}" for n in range(len(self.bodies))),
             *(f"wheels.{n}" for n in range(len(self.wheels))),

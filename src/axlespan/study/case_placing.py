@@ -51,7 +51,6 @@ class Placed(Part):
         """
         if self.count > 1 and self.spacing is not None and self.spacing <= wheelbase:
             raise InputError(
-                f"must be more than {show(wheelbase, LENGTH)}, the distance from the first wheel of a vehicle to "
-                "its last",
+                f"must be more than {show(wheelbase, LENGTH)}, from first to last wheel of a vehicle",
                 field="spacing",
             )

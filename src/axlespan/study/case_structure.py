@@ -125,7 +125,7 @@ class ContinuousBeam(BeamProperties):
         )
         missing = [
             InputError(
-                "is missing: neither the span nor the structure gives it",
+                "is missing; neither the span nor the structure gives it",
                 field=f"spans.{number}.{name}",
                 fix=f"Add {name}: {_EXAMPLES[name]} to the span, or to the structure for all spans",
             )
@@ -144,7 +144,7 @@ class ContinuousBeam(BeamProperties):
 def _check_shear(beam: SimpleSpan | Span, prefix: str = "") -> None:
     if beam.shear_area is not None and beam.poisson_ratio is None:
         raise InputError(
-            "is missing: shear_area needs it for the shear modulus",
+            "is missing; shear_area needs it for the shear modulus",
             field=f"{prefix}poisson_ratio",
             fix="Add poisson_ratio: 0.2",
         )

@@ -7,11 +7,13 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from axlespan.errors import InputError
-from axlespan.study.checks import Location, Measured, OneOf, Part, Table
+from axlespan.study.check_lists import Table
+from axlespan.study.checks import Location, Measured, OneOf, Part
 from axlespan.study.kinds import Kinds, tag
 from axlespan.study.quantities import (
     Angle,
     Dashpot,
+    Flag,
     Frequency,
     Length,
     RotationalDashpot,
@@ -40,19 +42,23 @@ class ConstantRotation(Part):
 
 
 class TableMotion(Part):
-    """A displacement over time, linear between its points, constant before and after them."""
+    """A displacement over time, constant before its first and after its last point."""
 
     kind: Literal["table"]
     points: Annotated[tuple[tuple[float, float], ...], Table(Measured(TIME), Measured(LENGTH))]
     """Pairs of time and displacement."""
+    smooth: Flag = False
+    """Whether a cubic spline joins the points, at rest at both ends, in place of straight lines."""
 
 
 class TableRotation(Part):
-    """A rotation over time, linear between its points, constant before and after them."""
+    """A rotation over time, constant before its first and after its last point."""
 
     kind: Literal["table"]
     points: Annotated[tuple[tuple[float, float], ...], Table(Measured(TIME), Measured(ANGLE))]
     """Pairs of time and rotation."""
+    smooth: Flag = False
+    """Whether a cubic spline joins the points, at rest at both ends, in place of straight lines."""
 
 
 class HarmonicMotion(Part):
@@ -126,7 +132,8 @@ class Dashpots(Part):
 class Support(Part):
     """What holds the structure at one place: rigidly, elastically, or as its motion prescribes.
 
-    A direction may stand under one of ``fixed``, ``stiffness`` and ``motion``; one that stands nowhere is free.
+    A direction may stand under one of ``fixed``, ``stiffness`` (and ``damping``) and ``motion``; one that
+    stands nowhere is free.
     """
 
     at: Annotated[float | str, Location(), Field(examples=["0 m"])]

@@ -1,9 +1,9 @@
 """Trains: entries of equal vehicles that follow each other.
 
-Where vehicles stand: ``spacing`` is the distance from the first wheel of one vehicle of an entry to the first wheel
-of the next. The first vehicle of a later entry stands one such spacing of the entry before it behind the last
-vehicle of that entry, first wheel to first wheel, unless it says otherwise: by ``gap``, its distance behind the last
-wheel ahead, or by ``offset``, the distance of its first wheel behind the first wheel of the train.
+Where vehicles stand: ``spacing`` is the distance from the first wheel of one vehicle of an entry to the first
+wheel of the next. The first vehicle of a later entry follows the last one of the entry before at that entry's
+``spacing``, first wheel to first wheel, unless it has a word of its own: ``gap``, the distance of its first
+wheel behind the last wheel ahead, or ``offset``, that behind the first wheel of the train.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from axlespan.errors import InputError
 from axlespan.study.case_multibody import Multibody
 from axlespan.study.case_placing import Placed
 from axlespan.study.case_vehicle_imported import MatricesVehicle, MeshVehicle
-from axlespan.study.checks import Several
+from axlespan.study.check_lists import Several
 from axlespan.study.faults import InputErrors, listed, nearest
 from axlespan.study.kinds import Kinds, tag
 from axlespan.study.quantities import (
@@ -132,7 +132,7 @@ KINDS = Kinds(
 
 
 def _known(raw: Any, info: ValidationInfo) -> Any:
-    """Check the word under ``vehicle``: a kind, or an entry of the library (validation context ``vehicles``)."""
+    """Check the word under ``vehicle``: a kind, or a name in the library (context ``vehicles``)."""
     word = raw.get("vehicle") if isinstance(raw, dict) else None
     library: Sequence[str] = tuple((info.context or {}).get("vehicles", ()))
     if not isinstance(word, str) or word in KINDS.names:

@@ -1,9 +1,8 @@
-"""Checks of single values in a case file: quantities, whole numbers, choices, texts, positions, tables."""
+"""Checks of single values in a case file: quantities, whole numbers, choices, texts, positions."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Final
@@ -14,7 +13,7 @@ from pydantic_core import CoreSchema, core_schema
 
 from axlespan import units
 from axlespan.errors import InputError
-from axlespan.study.faults import InputErrors, listed, nearest
+from axlespan.study.faults import listed, nearest
 from axlespan.units import Dimension
 
 _INFINITY: Final = float("inf")
@@ -30,13 +29,15 @@ class Part(BaseModel):
         return {name: value for name, value in self if value is not None}
 
 
-class _Checked:
+class Checked:
     """A check of one value, in the form that pydantic takes: the validator is ``read``."""
 
     def read(self, raw: Any) -> Any:
+        """Return the value, or raise what is wrong with it."""
         raise NotImplementedError
 
     def json_schema(self) -> dict[str, Any]:
+        """Return the JSON Schema of what may be written."""
         raise NotImplementedError
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
@@ -49,7 +50,7 @@ class _Checked:
 
 
 @dataclass(frozen=True)
-class Measured(_Checked):
+class Measured(Checked):
     """A quantity: a number in SI units, or a number and its unit.
 
     Parameters
@@ -59,8 +60,8 @@ class Measured(_Checked):
     above, at_least, below, at_most : float
         Bounds in SI units.
     believable : (float, float), optional
-        Where such a quantity lies in practice [SI], whatever its sign. A plain number outside is refused, for it
-        was probably meant in another unit; a number with a unit is taken.
+        Where such a quantity lies in practice [SI], whatever its sign. A plain number outside is refused, for
+        it was probably meant in another unit; a number with a unit is taken.
     """
 
     dimension: Dimension
@@ -88,7 +89,7 @@ class Measured(_Checked):
 
     def json_schema(self) -> dict[str, Any]:
         """Return the JSON Schema: a number, or a text with a unit."""
-        unit = f"In {self.dimension.unit}." if self.dimension.unit else "A ratio."
+        unit = f"In {self.dimension.unit}." if self.dimension.unit else "A number."
         number: dict[str, Any] = {"type": "number", "description": unit}
         bounds = {
             "exclusiveMinimum": self.above,
@@ -126,7 +127,7 @@ class Measured(_Checked):
     def _remedy(self, raw: Any, value: float) -> str | None:
         if self.dimension is units.RATIO and 1.0 <= value <= 100.0 and self.below <= 1.0:
             return f"Write {value:g} % if percent are meant"
-        if value < 0.0 and self.above == 0.0 and isinstance(raw, (int, float, str)):
+        if value < 0.0 and 0.0 in (self.above, self.at_least):
             return f"Write {str(raw).strip().lstrip('-−')}"
         return f"Write, for example, {self.dimension.example}" if self.above == 0.0 else None
 
@@ -147,7 +148,7 @@ def _has_unit(raw: Any) -> bool:
 
 
 @dataclass(frozen=True)
-class Whole(_Checked):
+class Whole(Checked):
     """A whole number."""
 
     at_least: int = 1
@@ -170,7 +171,7 @@ class Whole(_Checked):
 
 
 @dataclass(frozen=True)
-class OneOf(_Checked):
+class OneOf(Checked):
     """One word of a few."""
 
     words: tuple[str, ...]
@@ -189,8 +190,8 @@ class OneOf(_Checked):
 
 
 @dataclass(frozen=True)
-class Word(_Checked):
-    """A text that is not empty; with ``strict`` a name of letters, digits, - and _, as d.o.f. names need it."""
+class Word(Checked):
+    """A text that is not empty; with ``strict`` a name of letters, digits, - and _, as in names of d.o.f."""
 
     strict: bool = False
 
@@ -211,7 +212,7 @@ class Word(_Checked):
 
 
 @dataclass(frozen=True)
-class Location(_Checked):
+class Location(Checked):
     """A position along the running line [m], or the name of a node."""
 
     def read(self, raw: Any) -> float | str:
@@ -224,105 +225,5 @@ class Location(_Checked):
         """Return the JSON Schema."""
         return {
             "type": ["number", "string"],
-            "description": "Position along the running line, in m when a plain number; or the name of a node.",
+            "description": "Position along the running line, in m or with its unit; or the name of a node.",
         }
-
-
-@dataclass(frozen=True)
-class Table(_Checked):
-    """Pairs of two quantities, the first of them increasing: ``[[0 s, 10 m/s], [5 s, 20 m/s]]``."""
-
-    first: Measured
-    second: Measured
-    at_least: int = 2
-
-    def read(self, raw: Any) -> tuple[tuple[float, float], ...]:
-        """Return the pairs in SI units."""
-        example = f"[[0, {self.second.dimension.example}], [{self.first.dimension.example}, ...]]"
-        if not isinstance(raw, Sequence) or isinstance(raw, str):
-            raise InputError("must be a list of pairs", value=raw, fix=f"Write {example}")
-        if len(raw) < self.at_least:
-            raise InputError(f"must have at least {self.at_least} pairs", value=raw, fix=f"Write {example}")
-        pairs = [self._pair(pair, row) for row, pair in enumerate(raw)]
-        for row in range(1, len(pairs)):
-            if pairs[row][0] <= pairs[row - 1][0]:
-                raise InputError(
-                    f"must increase: the pair before has {self.first.plainly(pairs[row - 1][0])}",
-                    field=f"{row}.0",
-                    value=raw[row][0],
-                )
-        return tuple(pairs)
-
-    def _pair(self, raw: Any, row: int) -> tuple[float, float]:
-        if not isinstance(raw, Sequence) or isinstance(raw, str) or len(raw) != 2:
-            name = f"{self.first.dimension.name} and {self.second.dimension.name}"
-            raise InputError(f"must be a pair: {name}", field=f"{row}", value=raw)
-        values = []
-        for column, kind in enumerate((self.first, self.second)):
-            try:
-                values.append(kind.read(raw[column]))
-            except InputError as error:
-                raise InputError(
-                    error.rule, field=f"{row}.{column}", value=raw[column], fix=error.fix
-                ) from None
-        return values[0], values[1]
-
-    def json_schema(self) -> dict[str, Any]:
-        """Return the JSON Schema."""
-        pair = [self.first.json_schema(), self.second.json_schema()]
-        row = {"type": "array", "prefixItems": pair, "items": False, "minItems": 2}
-        return {"type": "array", "items": row, "minItems": self.at_least}
-
-
-@dataclass(frozen=True)
-class Several(_Checked):
-    """A list of quantities of one kind.
-
-    Parameters
-    ----------
-    item : Measured
-        What each of them is.
-    example : str
-        Such a list, for messages.
-    exactly : int, optional
-        How many there must be; at least one when left out.
-    increasing : bool
-        Whether each must be larger than the one before.
-    alone : bool
-        Whether one quantity without brackets is a list of one.
-    """
-
-    item: Measured
-    example: str
-    exactly: int | None = None
-    increasing: bool = False
-    alone: bool = False
-
-    def read(self, raw: Any) -> tuple[float, ...]:
-        """Return the values in SI units."""
-        if self.alone and not isinstance(raw, (list, tuple)):
-            return (self.item.read(raw),)
-        if not isinstance(raw, (list, tuple)):
-            raise InputError("must be a list", value=raw, fix=f"Write {self.example}")
-        values, faults = [], []
-        for number, one in enumerate(raw):
-            try:
-                values.append(self.item.read(one))
-            except InputError as error:
-                faults.append(InputError(error.rule, field=str(number), value=one, fix=error.fix))
-        if faults:
-            raise InputErrors(faults)
-        if (self.exactly is None and not values) or len(values) != (self.exactly or len(values)):
-            wanted = f"exactly {self.exactly} values" if self.exactly else "at least one value"
-            raise InputError(f"must have {wanted}, not {len(values)}", value=raw, fix=f"Write {self.example}")
-        for number in range(1, len(values) if self.increasing else 0):
-            if values[number] <= values[number - 1]:
-                rule = f"must increase: the value before is {self.item.plainly(values[number - 1])}"
-                raise InputError(rule, field=str(number), value=raw[number])
-        return tuple(values)
-
-    def json_schema(self) -> dict[str, Any]:
-        """Return the JSON Schema."""
-        items = {"type": "array", "items": self.item.json_schema(), "minItems": self.exactly or 1}
-        several = {**items, "maxItems": self.exactly} if self.exactly else items
-        return {"anyOf": [self.item.json_schema(), several]} if self.alone else several

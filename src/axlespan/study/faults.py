@@ -42,7 +42,7 @@ class InputErrors(InputError):
         return "\n".join(lines)
 
 
-def nearest(name: str, known: Iterable[str]) -> str | None:
+def nearest(name: str, known: Iterable[str], likeness: float = 0.7) -> str | None:
     """Return the known name that is most like ``name``, whatever its case, hyphens and underscores.
 
     Examples
@@ -51,7 +51,7 @@ def nearest(name: str, known: Iterable[str]) -> str | None:
     ('youngs_modulus', None)
     """
     folded = {_folded(other): other for other in known}
-    near = get_close_matches(_folded(name), folded, n=1, cutoff=0.7)
+    near = get_close_matches(_folded(name), folded, n=1, cutoff=likeness)
     return folded[near[0]] if near else None
 
 

@@ -68,9 +68,9 @@ class Kinds:
             )
         if self.key not in raw:
             raise InputError(
-                f"is missing: it says what kind of {self.what} this is",
+                f"is missing; it says what kind of {self.what} this is",
                 field=self.key,
-                fix=f"Add {self.key}: {listed(self.names)}",
+                fix=f"Add {self.key}: {self.names[0]} (or {', '.join(self.names[1:])})",
             )
         word = raw[self.key]
         if word not in self.names:
@@ -119,7 +119,7 @@ class ExistingFile:
             return path
         if path.is_dir():
             raise InputError("is a folder, not a file", value=raw)
-        near = nearest(path.name, others)
+        near = nearest(path.name, others, likeness=0.8)
         where = folder.resolve() if not path.is_absolute() else path.parent
         fix = f"Did you mean {near}?" if near else f"Names are relative to the case file's folder, {where}"
         raise InputError("no such file", value=raw, fix=fix)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import stat
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
@@ -49,7 +50,7 @@ class LoadedCase:
         return self.source.place(path)
 
     def located(self, error: InputError, path: str) -> InputError:
-        """Return an error of a later check, pointing to the value of a dotted path, with the value as written."""
+        """Return an error of a later check that points to the value of a dotted path, as it is written."""
         return self.source.blame(path, error.rule, error.fix)
 
 
@@ -91,9 +92,12 @@ def read_case(
     document = read_yaml(text, file)
     source = Source(file, text, document.root)
     if not isinstance(document.data, Mapping):
-        what = "a list" if isinstance(document.data, list) else "no mapping"
-        fix = "Begin with title: ..., structure: ..., train: ..."
-        raise InputError(f"must be a mapping; this is {what}", place=source.place(()), fix=fix)
+        what = "a list" if isinstance(document.data, list) else "a single value"
+        glued = isinstance(document.data, str) and re.match(r"\w+:\S", document.data)
+        fix = (
+            "Write a space after each colon" if glued else "Begin with title: ..., structure: ..., train: ..."
+        )
+        raise InputError(f"must be keys and values; this is {what}", place=source.place(()), fix=fix)
     context: dict[str, Any] = {"folder": Path(folder), "vehicles": tuple(vehicles), "spectra": tuple(spectra)}
     try:
         case = Case.model_validate(document.data, context=context)
@@ -109,14 +113,17 @@ def _read_text(name: str) -> str:
     """Return the text of a file of moderate size."""
     here = Place(name)
     try:
-        if stat.S_ISDIR(os.stat(name).st_mode):
+        about = os.stat(name)
+        if stat.S_ISDIR(about.st_mode):
             cases = sorted(p.name for p in Path(name).glob("*.y*ml"))
             fix = (
                 f"Name a file in it, such as {os.path.join(name, cases[0])}" if cases else "Name a case file"
             )
             raise InputError("is a folder, not a case file", place=here, fix=fix)
+        if about.st_size > LARGEST:
+            raise _too_large(here)
         with open(name, "rb") as stream:
-            raw = stream.read(LARGEST + 1)
+            raw = stream.read(LARGEST + 1)  # a pipe does not say how long it is
     except FileNotFoundError:
         raise InputError("no such file", place=here, fix=_other_file(name)) from None
     except PermissionError:
@@ -125,27 +132,33 @@ def _read_text(name: str) -> str:
         words = getattr(error, "strerror", None) or str(error)
         raise InputError(f"cannot be read: {words}", place=here) from None
     if len(raw) > LARGEST:
-        raise InputError(
-            f"is larger than {LARGEST / 1e6:g} MB, the most a case file may have",
-            place=here,
-            fix="Put long tables into files of their own, as in irregularity: {kind: table, file: profile.csv}",
-        )
+        raise _too_large(here)
     return _decoded(raw, here)
+
+
+def _too_large(here: Place) -> InputError:
+    return InputError(
+        f"is larger than {LARGEST / 1e6:g} MB, the most that a case file may have",
+        place=here,
+        fix="Put long tables into files of their own, as in irregularity: {kind: table, file: profile.csv}",
+    )
 
 
 def _decoded(raw: bytes, here: Place) -> str:
     if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
         raise InputError("is written in UTF-16", place=here, fix="Save it as UTF-8")
     if b"\0" in raw:
-        raise InputError("is no text file", place=here, fix="A case file is YAML, written with a text editor")
+        raise InputError(
+            "is not a text file", place=here, fix="A case file is YAML, written with a text editor"
+        )
     try:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = raw.count(b"\n", 0, error.start) + 1
         column = len(raw[raw.rfind(b"\n", 0, error.start) + 1 : error.start].decode("utf-8", "replace")) + 1
-        likely = raw[error.start : error.start + 1].decode("cp1252", "replace")
+        byte = raw[error.start : error.start + 1]
         raise InputError(
-            f"is not written in UTF-8: byte 0x{raw[error.start]:02x}, in Windows-1252 '{likely}', stands here",
+            f"is not UTF-8: byte 0x{byte.hex()}, in Windows-1252 '{byte.decode('cp1252', 'replace')}'",
             place=Place(here.file, line, column),
             fix="Save it as UTF-8",
         ) from None

@@ -10,7 +10,8 @@ from pydantic.fields import FieldInfo
 
 from axlespan.errors import InputError
 from axlespan.study.case import Case
-from axlespan.study.checks import Measured, Part, Several, Whole
+from axlespan.study.check_lists import Several
+from axlespan.study.checks import Measured, Part, Whole
 from axlespan.study.faults import listed, nearest
 from axlespan.study.kinds import is_tag
 from axlespan.study.source import Source
@@ -46,7 +47,7 @@ _SHORT: Final = {
 
 
 def explain(error: ValidationError, source: Source) -> list[InputError]:
-    """Return one located error for each that pydantic found; slips of a key hide that its right name is missing."""
+    """Return one located error for each that pydantic found; a misspelt key is not missing as well."""
     items = error.errors(include_url=False, include_input=False)
     meant = {
         (*_path(item["loc"])[:-1], right)
@@ -83,7 +84,9 @@ def _explained(item: Any, path: tuple[Step, ...], source: Source) -> Iterator[In
         yield source.blame_key(path, *_unknown_key(item["loc"], path))
     else:
         rule = _RULES.get(kind, item["msg"][:1].lower() + item["msg"][1:])
-        yield source.blame(path, rule, _to_write(item["loc"], path))
+        word = source.word(path)
+        alone = f"Write [{word}]" if word and rule == "must be a list" else None
+        yield source.blame(path, rule, alone or _to_write(item["loc"], path))
 
 
 _RULES: Final = {

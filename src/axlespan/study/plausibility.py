@@ -1,7 +1,7 @@
 """Values that are possible and look wrong: a unit forgotten, a power of ten lost.
 
-What a plain number makes absurd is refused, with the unit that was probably meant; what has a unit is believed,
-and only warned of.
+What a plain number makes absurd is refused, with the unit that was probably meant; what has a unit is
+believed and only warned of.
 """
 
 from __future__ import annotations
@@ -17,7 +17,8 @@ from axlespan.errors import InputError
 from axlespan.study.case import Case
 from axlespan.study.case_structure import SimpleSpan
 from axlespan.study.case_train import SprungMass
-from axlespan.study.checks import Measured, Part, Several
+from axlespan.study.check_lists import Several
+from axlespan.study.checks import Measured, Part
 from axlespan.study.source import Source
 
 DEEPEST_SAG: Final = 1.0  # m; suspensions of rail and road vehicles sag by 5 to 300 mm
@@ -74,7 +75,7 @@ def _checks(annotation: Any) -> Iterator[Any]:
 
 def _fast(case: Case, source: Source) -> Iterator[InputError]:
     speed = case.crossing.speed
-    if speed is not None and FASTEST_LINE < speed and not _has_unit(source, "crossing.speed"):
+    if speed is not None and speed > FASTEST_LINE and not _has_unit(source, "crossing.speed"):
         rule = f"is taken as {speed:g} m/s, which is {units.show(speed, units.SPEED)}"
         yield source.blame("crossing.speed", rule, f"Write {speed:g} km/h if that is meant")
 
@@ -88,8 +89,8 @@ def _sagging(case: Case, source: Source) -> Iterator[tuple[InputError, bool]]:
         if sag > DEEPEST_SAG:
             path = f"train.{number}.stiffness"
             rule = (
-                f"is so soft that {units.show(vehicle.mass, units.MASS)} sag by {units.show(sag, units.LENGTH)} "
-                "under their weight"
+                f"is so soft that {units.show(vehicle.mass, units.MASS)} sag by "
+                f"{units.show(sag, units.LENGTH)} under their weight"
             )
             has_unit = _has_unit(source, path)
             yield source.blame(path, rule, _intended(source, path, "kN/m", "N/m", has_unit)), has_unit

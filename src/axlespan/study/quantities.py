@@ -19,6 +19,7 @@ from axlespan.units import (
     LENGTH,
     MASS,
     MASS_PER_LENGTH,
+    NUMBER,
     PER_TIME,
     PRESSURE,
     RATIO,
@@ -30,8 +31,8 @@ from axlespan.units import (
     TIME,
 )
 
-# What a plain number must lie between: wide enough for laboratory models and the longest bridges, narrow enough
-# to catch GPa taken for Pa, t for kg, mm for m, km/h for m/s and percent for ratios.
+# What a plain number must lie between: wide enough for laboratory models and the longest bridges, narrow
+# enough to catch GPa taken for Pa, t for kg, mm for m, km/h for m/s and percent for ratios.
 DISTANCE = Measured(LENGTH, at_least=0.0, believable=(0.01, 1e4))
 SPACING = Measured(LENGTH, above=0.0, believable=(0.01, 1e3))
 UNEVENNESS = Measured(LENGTH, believable=(0.0, 0.2))
@@ -50,7 +51,7 @@ Footprint = Annotated[float, Measured(LENGTH, at_least=0.0, believable=(1e-3, 5.
 Area = Annotated[float, Measured(AREA, above=0.0, believable=(1e-7, 1e3))]
 SecondMoment = Annotated[float, Measured(SECOND_MOMENT, above=0.0, believable=(1e-14, 1e5))]
 Modulus = Annotated[float, Measured(PRESSURE, above=0.0, believable=(1e6, 2e12))]
-PoissonRatio = Annotated[float, Measured(RATIO, above=-1.0, below=0.5)]
+PoissonRatio = Annotated[float, Measured(NUMBER, above=-1.0, below=0.5)]
 Density = Annotated[float, Measured(DENSITY, above=0.0, believable=(20.0, 25e3))]
 MassPerLength = Annotated[float, Measured(MASS_PER_LENGTH, above=0.0, believable=(0.1, 1e6))]
 BodyMass = Annotated[float, Measured(MASS, above=0.0, believable=(100.0, 1e6))]
@@ -68,7 +69,7 @@ Duration = Annotated[float, Measured(TIME, above=0.0)]
 Delay = Annotated[float, Measured(TIME, at_least=0.0)]
 Angle = Annotated[float, Measured(ANGLE)]
 Gravity = Annotated[float, Measured(ACCELERATION, at_least=0.0)]
-Factor = Annotated[float, Measured(RATIO, above=0.0)]
+Factor = Annotated[float, Measured(NUMBER, above=0.0)]
 
 Count = Annotated[int, Whole()]
 Few = Annotated[int, Whole(at_most=100_000)]

@@ -25,7 +25,7 @@ class Source:
     root: Spot
 
     def place(self, path: Path) -> Place:
-        """Return where a value stands; for one that is not there, where the mapping's key is that lacks it."""
+        """Return where a value stands; for one that is missing, where the key of its mapping stands."""
         spot, rest = self._walk(path)
         if spot is self.root:
             return Place(self.file, 1, 1) if rest else Place(self.file, spot.line, spot.column)
@@ -38,6 +38,15 @@ class Source:
         spot, rest = self._walk(path)
         return None if rest and spot.children is not None else spot.written
 
+    def knows(self, path: Path) -> bool:
+        """Whether a value stands there."""
+        return not self._walk(path)[1]
+
+    def word(self, path: Path) -> str | None:
+        """Return a value as it is written, ``None`` unless it is a single one."""
+        spot, rest = self._walk(path)
+        return None if rest or spot.children is not None else spot.written
+
     def is_empty(self, path: Path) -> bool:
         """Whether a key stands there without value."""
         spot, rest = self._walk(path)
@@ -47,11 +56,10 @@ class Source:
         """Return an error that points to a value, with the value as written."""
         spot, rest = self._walk(path)
         steps = _steps(path)
-        inside = (
-            bool(rest) and spot.children is None
-        )  # a scalar stands where a mapping or a list was expected
+        inside = bool(rest) and spot.children is None  # a word where a mapping or a list is expected
         if inside:
             steps = steps[: len(steps) - len(rest)]
+            rule = f"{rest[-1]} {rule}" if rule.startswith("is missing") else rule
         more: dict[str, Any] = {}
         if self.is_empty(path):
             rule = "is empty"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any, Final
 
@@ -39,6 +38,10 @@ class Written(str):
 
     def __repr__(self) -> str:
         return str(self)
+
+
+Pairs = dict[str, tuple[Node, Node]]
+"""Key and value by the name that the key is."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,9 +79,7 @@ def read_yaml(text: str, file: str) -> Document:
     if strange:
         line, column = _line_and_column(text, strange.start())
         rule = f"a control character, U+{ord(strange[0]):04X}, stands here"
-        raise InputError(
-            rule, place=Place(file, line, column), fix="Is this a text file? Delete the character"
-        )
+        raise InputError(rule, place=Place(file, line, column), fix="Delete it, if this is a text file")
     parser = YAML(typ="safe", pure=True)
     try:
         with warnings.catch_warnings():
@@ -91,47 +92,51 @@ def read_yaml(text: str, file: str) -> Document:
     except (YAMLError, ValueError, LookupError, TypeError, AttributeError, AssertionError) as error:
         # the parser lets some of its own slips through on odd input; to the user it is the same: no YAML
         raise InputError(f"is no YAML that can be read: {error}", place=Place(file)) from None
-    if node is None:
+    if node is None or (_is_blank(node) and not text.strip(" -\t\r\n")):
         raise InputError("is empty", place=Place(file), fix="axlespan examples writes cases to begin with")
     return _Reader(text, file).document(node)
 
 
 class _Reader:
-    """Turns composed nodes into data and spots; counts what aliases copy."""
+    """Turns composed nodes into data and spots; keeps the path, and counts what aliases copy."""
 
     def __init__(self, text: str, file: str) -> None:
         self.text = text
         self.file = file
         self.faults: list[InputError] = []
+        self.path: list[str] = []
         self.seen: set[int] = set()
-        self.copies = 0
         self.open: set[int] = set()
+        self.copies = 0
 
     def document(self, node: Node) -> Document:
-        data, root = self.value(node, node, 0)
+        data, root = self.value(node, node)
         return Document(data, root, self.faults)
 
-    def value(self, node: Node, key: Node, depth: int) -> tuple[Any, Spot]:
-        self._guard(node, depth)
-        line, column = _start(node)
-        spot = (line, column, *_start(key))
+    def value(self, node: Node, key: Node) -> tuple[Any, Spot]:
+        self._guard(node)
+        where = (*_start(key if _is_blank(node) else node), *_start(key), self._source(node))
+        if isinstance(node, ScalarNode):
+            return self._scalar(node), Spot(*where)
+        self.open.add(id(node))
         if isinstance(node, MappingNode):
-            data, children = {}, {}
-            self.open.add(id(node))
-            for name, inner_key, inner in self._pairs(node):
-                data[name], children[name] = self.value(inner, inner_key, depth + 1)
+            both = {name: self._inner(name, value, at) for name, (at, value) in self._pairs(node).items()}
             self.open.discard(id(node))
-            return data, Spot(*spot, self._source(node), children)
-        if isinstance(node, SequenceNode):
-            self.open.add(id(node))
-            both = [self.value(inner, inner, depth + 1) for inner in node.value]
-            self.open.discard(id(node))
-            return [item for item, _ in both], Spot(*spot, self._source(node), [child for _, child in both])
-        return self._scalar(node), Spot(*spot, self._source(node))
+            children = {name: spot for name, (_, spot) in both.items()}
+            return {name: inner for name, (inner, _) in both.items()}, Spot(*where, children)
+        listed = [self._inner(str(number), value, value) for number, value in enumerate(node.value)]
+        self.open.discard(id(node))
+        return [inner for inner, _ in listed], Spot(*where, [spot for _, spot in listed])
 
-    def _guard(self, node: Node, depth: int) -> None:
+    def _inner(self, name: str, node: Node, key: Node) -> tuple[Any, Spot]:
+        self.path.append(name)
+        both = self.value(node, key)
+        self.path.pop()
+        return both
+
+    def _guard(self, node: Node) -> None:
         """Refuse what grows without end: deep nesting, aliases to themselves, aliases of aliases."""
-        if depth > DEEPEST:
+        if len(self.path) > DEEPEST:
             self._stop("is nested too deeply", node)
         if id(node) in self.open:
             self._stop("an alias (*name) stands within its own anchor (&name)", node)
@@ -142,108 +147,94 @@ class _Reader:
         self.seen.add(id(node))
 
     def _stop(self, rule: str, node: Node) -> None:
-        raise InputErrors([*self.faults, InputError(rule, place=self._place(node))])
+        raise InputErrors([*self.faults, InputError(rule, place=Place(self.file, *_start(node)))])
 
-    def _pairs(self, node: MappingNode) -> Iterator[tuple[str, Node, Node]]:
-        """Yield name, key and value of a mapping: merged ones first, then its own, mended and once each."""
-        own: dict[str, tuple[Node, Node]] = {}
-        merged: dict[str, tuple[Node, Node]] = {}
-        before: tuple[Node, Node] | None = None
+    def _pairs(self, node: MappingNode) -> Pairs:
+        """Return key and value by name: merged ones first, then the mapping's own, mended and once each."""
+        own: Pairs = {}
+        merged: Pairs = {}
         for key, value in node.value:
-            if not isinstance(key, ScalarNode):
+            name = str(key.value).strip() if isinstance(key, ScalarNode) else ""
+            if isinstance(key, ScalarNode) and key.tag == f"{_TAG}merge":
+                merged = {**self._merged(value), **merged}
+            elif not name:
                 self._fault("a key must be a word", key)
+            elif node.flow_style and _is_blank(value) and self._mended(name, key, own):
                 continue
-            if key.tag == f"{_TAG}merge":
-                merged = {**dict(self._merged(value)), **merged}
-                continue
-            name = str(key.value).strip()
-            if node.flow_style and self._mended(name, key, value, own, before):
-                continue
-            if name in own:
+            elif name in own:
                 self._fault(f"is given twice; the first is in line {_start(own[name][0])[0]}", key, name)
-                continue
-            own[name] = before = (key, value)
-        for name, (key, value) in {**merged, **own}.items():
-            yield name, key, value
+            else:
+                own[name] = key, value
+        return {**merged, **own}
 
-    def _merged(self, node: Node) -> Iterator[tuple[str, tuple[Node, Node]]]:
-        if isinstance(node, SequenceNode):
-            for one in reversed(node.value):
-                yield from self._merged(one)
-        elif isinstance(node, MappingNode):
-            self._guard(node, 0)
+    def _merged(self, node: Node) -> Pairs:
+        """Return what ``<<: *coach`` or ``<<: [*coach, *bogie]`` stands for."""
+        if isinstance(node, MappingNode):
+            self._guard(node)
             self.open.add(id(node))
-            for name, key, value in self._pairs(node):
-                yield name, (key, value)
+            pairs = self._pairs(node)
             self.open.discard(id(node))
-        else:
-            self._fault("<< must be followed by an alias of a mapping, such as *coach", node)
+            return pairs
+        if isinstance(node, SequenceNode):
+            self._guard(node)
+            return {name: pair for one in reversed(node.value) for name, pair in self._merged(one).items()}
+        self._fault("<< must be followed by an alias of a mapping, such as *coach", node)
+        return {}
 
-    def _mended(
-        self,
-        name: str,
-        key: ScalarNode,
-        value: Node,
-        own: dict[str, tuple[Node, Node]],
-        before: tuple[Node, Node] | None,
-    ) -> bool:
+    def _mended(self, name: str, key: Node, own: Pairs) -> bool:
         """Report and mend two slips within braces: ``{length:25 m}`` and ``{length: 12,5 m}``."""
-        if not _is_blank(value):
-            return False
         left, colon, right = name.partition(":")
         if colon and right and re.fullmatch(r"[A-Za-z_]\w*", left) and left not in own:
             self._fault("a space is missing after the colon", key, left, f"Write {left}: {right}")
-            mended = ScalarNode(f"{_TAG}str", right, key.start_mark, key.end_mark)
-            own[left] = (key, mended)
+            own[left] = key, _text(right, key)
             return True
-        if before and re.match(r"\d", name) and isinstance(before[1], ScalarNode):
-            whole = str(before[1].value)
-            if re.fullmatch(r"[+-]?\d+", whole):
-                self._fault(
-                    "has a decimal comma",
-                    before[1],
-                    str(before[0].value),
-                    f"Write {whole}.{name}",
-                    Written(f"{whole},{name}"),
-                )
-                return True
-        return False
+        before, (at, value) = next(reversed(own.items()), ("", (key, key)))
+        whole = str(value.value)
+        if not before or not re.match(r"\d", name) or not re.fullmatch(r"[+-]?\d+", whole):
+            return False
+        self._fault("has a decimal comma", value, before, f"Write {whole}.{name}", Written(f"{whole},{name}"))
+        own[before] = at, _text(f"{whole}.{name}", value)
+        return True
 
-    def _scalar(self, node: Node) -> Any:
+    def _scalar(self, node: ScalarNode) -> Any:
         kind = str(node.tag).removeprefix(_TAG)
         text = str(node.value)
-        if kind in ("str", "timestamp", "merge", "value"):
-            return text
-        if kind == "null":
-            return None
-        if kind == "bool":
-            return _CONSTANTS.get(text.lower(), text)
         try:
+            if kind == "null":
+                return None
+            if kind == "bool":
+                return _CONSTANTS.get(text.lower(), text)
             if kind == "int":
                 return _integer(text)
             if kind == "float":
                 return float(text.replace("_", "").lower().replace(".inf", "inf").replace(".nan", "nan"))
         except ValueError:
             return text
-        self._fault(f"tags such as {node.tag} are not read", node, fix="Delete it")
-        return None
+        if kind not in ("str", "timestamp", "merge", "value"):
+            self._fault(f"tags such as {node.tag} are not read", node, fix="Delete the tag")
+        return text
 
     def _source(self, node: Node) -> Written | None:
         """Return a value as it stands in the file, if it stands in one line."""
-        start, end = node.start_mark.index, node.end_mark.index
-        text = self.text[start : min(end, start + 200)].strip()
+        text = self.text[
+            node.start_mark.index : min(node.end_mark.index, node.start_mark.index + 200)
+        ].strip()
         if isinstance(node, ScalarNode):
             return Written(text.partition("\n")[0] if node.style else str(node.value))
-        return Written(text) if node.flow_style and "\n" not in text else None
+        flows = isinstance(node, (MappingNode, SequenceNode)) and node.flow_style
+        return Written(text) if flows and "\n" not in text else None
 
     def _fault(
         self, rule: str, node: Node, name: str | None = None, fix: str | None = None, value: Any = None
     ) -> None:
         more = {} if value is None else {"value": value}
-        self.faults.append(InputError(rule, field=name, fix=fix, place=self._place(node), **more))
+        path = ".".join([*self.path, *([name] if name else [])])
+        place = Place(self.file, *_start(node))
+        self.faults.append(InputError(rule, field=path or None, fix=fix, place=place, **more))
 
-    def _place(self, node: Node) -> Place:
-        return Place(self.file, *_start(node))
+
+def _text(value: str, like: Node) -> ScalarNode:
+    return ScalarNode(f"{_TAG}str", value, like.start_mark, like.end_mark)
 
 
 def _start(node: Node) -> tuple[int, int]:

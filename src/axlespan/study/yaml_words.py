@@ -9,69 +9,79 @@ from ruamel.yaml.error import MarkedYAMLError
 
 from axlespan.errors import InputError, Place
 
-_COLON: Final = "a second colon stands in this line"
-# part of the parser's words: (rule, fix)
-_WORDS: Final = (
-    (r"character '\\t'", "a tab stands here", "Indent with spaces"),
-    (r"cannot start any token", "a value cannot begin with this character", "Put the value in quotes"),
-    (
-        r"mapping values are not allowed",
-        _COLON,
-        "Put the text in quotes",
+_QUOTES: Final = "Put the value in quotes"
+_ALIKE: Final = "Indent the keys of a mapping alike"
+_ASTRAY: Final = "is indented like none of the lines above"
+
+# pattern in the parser's words: (rule, fix); <0> stands for what the pattern caught
+_WORDS: Final[dict[str, tuple[str, str]]] = {
+    r"character '\\t'": ("a tab stands here", "Indent with spaces"),
+    r"character '(.)' that cannot start": ("a value cannot begin with <0>", _QUOTES),
+    r"sequence entries are not allowed": ("a list cannot begin here", "Begin it on the next line"),
+    r"unexpected end of stream": ("the quotes are not closed", "Close them at the end of the text"),
+    r"undefined alias '(.*)'": ("no anchor &<0> stands before this alias", "Name what it repeats with &<0>"),
+    r"unknown escape character": ("a backslash stands in double quotes", "Use single quotes"),
+    r"found '([\]}])'": ("<0> closes nothing", "Delete it, or open it before"),
+    r"found '?<block (?:mapping|sequence) start>": (_ASTRAY, _ALIKE),
+    r"expected <block end>, but found '-'": (
+        "an entry of a list stands among keys",
+        "Indent the list under its key",
     ),
-    (r"sequence entries are not allowed", "a list cannot begin here", "Begin the list on a line of its own, - first"),
-    (r"could not find expected ':'", "a colon and a space are missing after a key", "Write key: value"),
-    (r"expected ',' or '\}'", "a mapping in braces is not closed, or a comma is missing in it", "Write {a: 1, b: 2}"),
-    (r"expected ',' or '\]'", "a list in brackets is not closed, or a comma is missing in it", "Write [1, 2]"),
-    (r"unexpected end of stream", "a quoted text does not end", "Close the quotes"),
-    (r"undefined alias '(.*)'", "no anchor &<0> stands before the alias *<0>", "Name what is repeated with &<0>"),
-    (r"unknown escape character", "a backslash in double quotes begins no known character", "Use single quotes"),
-    (r"found '(\]|\})'", "<0> closes nothing", "Delete it, or open it before"),
-    (
-        r"found '?<block (mapping|sequence) start>|found '?<block end>",
-        "the indentation fits none of the lines above",
-        "Indent the keys of a mapping alike",
+    r"expected <block end>, but found '\?'": (
+        "a key stands among the entries of a list",
+        "Indent the list under a key of its own",
     ),
-    (r"expected <block end>, but found '(-|\?)'", "a list and a mapping are mixed here", "Indent what belongs together"),
-    (r"expected <block end>", "the indentation fits none of the lines above", "Indent the keys of a mapping alike"),
-    (r"found another document", "a second document (---) begins here", "Write one case in a file"),
-    (r"expected '<document start>'", "text goes on after the end of the mapping", "Indent it, or delete the braces"),
-    (r"", "is no YAML: <problem>", "Compare with a case of axlespan examples"),
-)  # fmt: skip
+    r"expected <block end>": (_ASTRAY, _ALIKE),
+    r"another document": ("a second document (---) begins here", "Write one case in a file"),
+    r"expected '<document start>'": (
+        "stands behind the end of the case",
+        "Delete it, or the brackets around the case",
+    ),
+}
 
 
 def in_words(error: MarkedYAMLError, text: str, file: str) -> InputError:
     """Return an error of the parser with line, column and words for engineers."""
     problem = str(error.problem or error.context or error).replace("\n", " ")
-    for pattern, rule, fix in _WORDS:
+    at, start = (
+        (mark.line, mark.column) if mark else (0, 0)
+        for mark in (error.problem_mark or error.context_mark, error.context_mark or error.problem_mark)
+    )
+    line = [*text.splitlines(), ""][at[0]] if at[0] <= text.count("\n") else ""
+    if "mapping values are not allowed" in problem:
+        if re.search(r":\s", line[: at[1]]):
+            rule, fix = "has a second colon", "Put the text behind the first colon in quotes"
+        else:
+            at, rule, fix = (at[0], _indent(line)), "is indented more than the line above allows", _ALIKE
+    elif "could not find expected ':'" in problem:
+        at, (rule, fix) = start, _without_colon(text.splitlines()[start[0]])
+    elif bracket := re.search(r"expected ',' or '([\]}])'", problem):
+        if at[1] == 0 or "stream end" in problem:
+            at, rule, fix = start, "this bracket is not closed", f"Add {bracket[1]}"
+        else:
+            rule, fix = f"a comma or {bracket[1]} is missing before this", "Separate entries by a comma"
+    else:
+        if "unexpected end of stream" in problem:
+            at = start
+        rule, fix = _looked_up(problem)
+    return InputError(rule, place=Place(file, at[0] + 1, at[1] + 1), fix=fix)
+
+
+def _without_colon(line: str) -> tuple[str, str]:
+    key = re.match(r"\s*(?:- )?(\w+):(\S.*)", line)
+    if key:
+        return "a space is missing after the colon", f"Write {key[1]}: {key[2]}"
+    return "has no colon", "Write key: value"
+
+
+def _looked_up(problem: str) -> tuple[str, str]:
+    for pattern, (rule, fix) in _WORDS.items():
         match = re.search(pattern, problem)
         if match:
-            words = match.groups()
-            mark = error.problem_mark or error.context_mark
-            if "not closed" in rule and error.context_mark and "stream end" in problem:
-                mark = error.context_mark  # point to the bracket, not to the end of the file
-            if "does not end" in rule and error.context_mark:
-                mark = error.context_mark
-            place = Place(file, mark.line + 1, mark.column + 1) if mark else Place(file)
-            rule, fix = _more_exact(rule, fix, text, place)
-            return InputError(_filled(rule, words, problem), place=place, fix=_filled(fix, words, problem))
-    raise AssertionError("the last pattern fits all")
+            caught = (match.groups() or ("",))[0]
+            return rule.replace("<0>", caught), fix.replace("<0>", caught)
+    return f"is no YAML: {problem}", "Compare it with a case of axlespan examples"
 
 
-def _more_exact(rule: str, fix: str, text: str, place: Place) -> tuple[str, str]:
-    """Tell a colon within a text from a line that is indented by mistake: the parser finds both at a colon."""
-    if rule != _COLON or place.line is None or place.column is None:
-        return rule, fix
-    before = text.splitlines()[place.line - 1][: place.column - 1]
-    if re.search(r":\s", before):
-        return rule, fix
-    return (
-        "is indented more than the line above, which has a value already",
-        "Indent the keys of a mapping alike",
-    )
-
-
-def _filled(words: str, parts: tuple[str, ...], problem: str) -> str:
-    for number, part in enumerate(parts):
-        words = words.replace(f"<{number}>", part)
-    return words.replace("<problem>", problem)
+def _indent(line: str) -> int:
+    return len(line) - len(line.lstrip())

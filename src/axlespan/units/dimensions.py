@@ -48,6 +48,7 @@ class Dimension:
         return exponents == self.exponents or (self.also is not None and exponents == self.also)
 
 
+NUMBER: Final = Dimension("a number", (0, 0, 0, 0), "", "0.5", ("",))
 RATIO: Final = Dimension("a pure number", (0, 0, 0, 0), "", "1 %", ("%",))
 ANGLE: Final = Dimension("an angle", (0, 0, 0, 1), "rad", "2 mrad", ("rad", "mrad"))
 LENGTH: Final = Dimension("a length", (1, 0, 0, 0), "m", "25 m", ("km", "m", "mm"))

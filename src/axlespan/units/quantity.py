@@ -9,7 +9,7 @@ from fractions import Fraction
 from typing import Any, Final
 
 from axlespan.errors import InputError
-from axlespan.units.dimensions import FORCE, FREQUENCY, MASS, RATIO, Dimension, kind
+from axlespan.units.dimensions import FORCE, FREQUENCY, MASS, NUMBER, RATIO, Dimension, kind
 from axlespan.units.symbols import Exponents, UnknownUnit, corrected, multiply_out
 
 _LONGEST: Final = 80
@@ -22,7 +22,9 @@ _VALUE: Final = re.compile(r"[+-]?(?:[0-9]+(?:_[0-9]+)*\.?[0-9]*|\.[0-9]+)(?:[eE
 # a number with a decimal comma or with separators: 12,5 | 1'000 | 1 595 | 1,595.5 | 1.000.000
 _SEPARATED: Final = re.compile(r"[+-]?[0-9]+(?:[,.'][0-9]+| [0-9]{3}(?![0-9]))+")
 _NO_MARKS: Final = str.maketrans("", "", ",.' ")
-_GOES_ON: Final = re.compile(r"[,'.]?\.?[0-9]|\s+[0-9]+(?!\s*/|[0-9])|\s*/\s*[0-9]|\s*[*^±]|\s*\+-|[eE]\b")
+_GOES_ON: Final = re.compile(
+    r"[,'.]?\.?[0-9]|\s+[0-9]+(?!\s*/|[0-9])|\s*/\s*[0-9]|\s*[*^±]|\s*-\s*[0-9]|\s*\+-|[eE]\b"
+)
 
 
 @dataclass(frozen=True)
@@ -133,7 +135,7 @@ def show(value: float, dimension: Dimension, digits: int = 4) -> str:
         return f"{value:g} {dimension.unit}".strip()
     scales = [(factor(unit, dimension), unit) for unit in dimension.shown]
     scale, unit = next((s for s in scales if abs(value) >= s[0] * (1.0 - 1e-12)), scales[-1])
-    return f"{value / scale:.{digits}g} {unit}"
+    return f"{value / scale:.{digits}g} {unit}".strip()
 
 
 def _product(number: str, scale: Fraction) -> float:
@@ -151,6 +153,8 @@ def _finite(value: float, written: object) -> float:
 
 
 def _example(dimension: Dimension | None) -> str:
+    if dimension is NUMBER:
+        return f"Write a plain number, such as {dimension.example}"
     if dimension is RATIO:
         return "Write a plain number, such as 0.01, or 1 %"
     return f"Write a number and its unit, such as {dimension.example if dimension else '25 m'}"
@@ -178,7 +182,7 @@ def _near(number: str, unit: str, dimension: Dimension | None) -> str:
 def _other_kind(reading: Reading, dimension: Dimension) -> str:
     """Say what to write instead of a quantity of another kind; weights and masses are converted."""
     here, wanted = reading.exponents, dimension.exponents
-    if dimension is RATIO or here == (0, 0, 0, 0):
+    if dimension in (RATIO, NUMBER) or here == (0, 0, 0, 0):
         return _example(dimension)
     if here == MASS.exponents and wanted == FORCE.exponents:
         return f"Write {show(reading.value * _WEIGHT, FORCE)}, the weight of {reading.number} {reading.unit}"

@@ -98,7 +98,7 @@ _SPOKEN: Final = {
 }
 _TERM: Final = re.compile(
     r"(?P<symbol>[A-Za-z°%‰]+)"
-    r"(?:(?:\^|\*\*)\s*(?P<power>[+-]?\d+(?:\.\d+)?|\([+-]?\d+/[1-9]\d*\))|(?P<adjacent>-?\d+))?"
+    r"(?:\s*(?:\^|\*\*)\s*(?P<power>[+-]?\d+(?:\.\d+)?|\([+-]?\d+/[1-9]\d*\))|(?P<adjacent>-?\d+))?"
 )
 
 

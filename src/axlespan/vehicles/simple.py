@@ -75,7 +75,7 @@ def axle_loads(
     positions : sequence of float
         Distances behind the first axle [m], the first being 0.
     """
-    values = list(loads) if isinstance(loads, Sequence) else [loads] * len(positions)
+    values = list(loads) if isinstance(loads, Sequence | np.ndarray) else [loads] * len(positions)
     if len(values) != len(positions):
         raise InputError("must be one load, or one for each axle", field="loads", value=values)
     for i, load in enumerate(values):
@@ -152,7 +152,7 @@ def rigid_body(
 
 
 def _each(values: float | Sequence[float], n: int, field: str) -> list[float]:
-    result = list(values) if isinstance(values, Sequence) else [float(values)] * n
+    result = list(values) if isinstance(values, Sequence | np.ndarray) else [float(values)] * n
     if len(result) != n:
         raise InputError(f"must be one value, or one for each of the {n} axles", field=field, value=result)
     for i, value in enumerate(result):

@@ -1,4 +1,4 @@
-"""A vehicle: a System with contact points, or just axle forces; positions are counted from its first wheel."""
+"""A vehicle: a System with contact points, or just axle forces; positions count from its first wheel."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from axlespan.errors import InputError
+from axlespan.linalg.eigen import lowest_modes
 from axlespan.linalg.factor import NotPositiveDefinite, factorize
 from axlespan.model.system import System
 from axlespan.running.structure import MAIN_LINE
@@ -45,6 +46,7 @@ class Vehicle:
     name: str = "vehicle"
     length: float | None = None  # over buffers [m], for drawings and overlaps
     facts: Mapping[str, float] = field(default_factory=dict)
+    is_multibody: bool = True  # of rigid bodies: all its periods matter; a mesh has far shorter ones
 
     def __post_init__(self) -> None:
         if not self.contacts:
@@ -101,7 +103,7 @@ class Vehicle:
             except NotPositiveDefinite as error:
                 raise self._mechanism(rest[np.asarray(error.suspects)]) from error
             forces = forces + stiffness[x][:, rest] @ u
-        if np.any(forces <= 0.0):
+        if gravity > 0.0 and np.any(forces <= 0.0):
             worst = int(np.argmin(forces))
             raise InputError(
                 "must press on the line when it stands still on level ground",
@@ -134,6 +136,20 @@ class Vehicle:
         if self.system is None:
             return False
         return bool(np.any(self.system.partition.C_FF.diagonal()[self.contact_dofs] != 0.0))
+
+    def frequencies(self) -> FloatArray:
+        """Natural frequencies [Hz] with the contact points held, ascending; empty for moving forces and masses."""
+        if self.system is None:
+            return np.empty(0)
+        blocks = self.system.partition
+        rest = np.setdiff1d(np.arange(blocks.K_FF.shape[0]), self.contact_dofs)
+        if not len(rest):
+            return np.empty(0)
+        stiffness, mass = (sp.csr_array(matrix[rest][:, rest]) for matrix in (blocks.K_FF, blocks.M_FF))
+        count = int(np.count_nonzero(mass.diagonal()))
+        if count == 0:
+            return np.empty(0)
+        return lowest_modes(stiffness, mass, min(count, 40)).frequencies
 
     def as_axle_loads(self, gravity: float = GRAVITY) -> Vehicle:
         """The same wheels as moving forces of their static loads."""

@@ -1,0 +1,1 @@
+"""The verification book: cases with known answers, and what axlespan gives."""
