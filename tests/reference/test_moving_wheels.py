@@ -187,8 +187,8 @@ def test_a_kink_in_the_profile_is_the_limit_of_short_bends():
 
 def test_two_units_follow_each_other_over_a_fine_wave():
     # 5750 kg on 1595 kN/m and 20 kNs/m over 500 kg, 3 m apart, 20 m/s, 0.1 mm waves of 4 m everywhere.
-    # Wheels with mass see the bending waves that the first entry sends out: they fall like 1 / modes and
-    # leave 6e-4 of the static load in the raw force; averaged over 5 ms the series has converged.
+    # Wheels with mass feel the undamped bending waves that entries send out: a share of 1 / n in mode n,
+    # 6e-4 of the static load in the force at an instant; averaged over 5 ms 20 and 40 modes agree.
     motion, time = Motion(20.0, (0.0, 3.0)), np.arange(12_501) * 1e-4
     settings = {"profile": harmonic(1e-4, 4.0)}
     forces = [
@@ -203,9 +203,9 @@ def test_two_units_follow_each_other_over_a_fine_wave():
         for f in forces
     ]
     np.testing.assert_allclose(mean[0], mean[1], atol=1e-4)
-    # and on the whole: within 2 % of the static load, the wheels' mean force static
-    assert 0.975 < mean[1].min() < 0.99
-    assert 1.01 < mean[1].max() < 1.025
+    # and on the whole within 2 % of the static load
+    assert 0.98 < mean[1].min() < 0.99
+    assert 1.01 < mean[1].max() < 1.02
 
 
 def test_wrong_input_is_named():

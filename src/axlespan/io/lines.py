@@ -172,9 +172,9 @@ def table_of(lines: Sequence[str], columns: int, separator: str | None = None) -
     Python objects for the millions of lines of a matrix.
     """
     text = "\n".join(lines)
-    if not text:
+    if not lines:
         return np.empty((0, columns))
-    if not text.isascii() or text.endswith("\n"):
+    if not text or not text.isascii() or text[-1] == "\n":
         return None
     if separator:
         text = text.replace(separator, " ")

@@ -34,6 +34,8 @@ _CHUNK = 16384
 # gzip beyond 1 gains 3 % in size for a quarter more time on histories.
 _LEVEL = 1
 
+_GIVE_ONE = "Give a result.nc that axlespan wrote"
+
 _COORDINATES = {
     "time": "time",
     "sensor": "name of the sensor",
@@ -87,6 +89,7 @@ def write_result(
     place = Path(path)
     part = place.with_name(f".{place.name}.{os.getpid()}-{secrets.token_hex(4)}.part")
     try:
+        part.touch(exist_ok=False)  # says plainly if the place is no good, which h5netcdf does not
         with h5netcdf.File(part, "w") as file:
             file.attrs.update(_attributes(result, case_text, version or axlespan.__version__))
             _write_coordinates(file, result)
@@ -168,10 +171,16 @@ def read_result(path: str | PathLike[str]) -> Result:
     """
     with _opened(path) as file:
         header = _header(file)
+        coordinates = {name: _names(file, name) for name in _COORDINATES if name != "time"}
+        time = np.asarray(file["time"][...], dtype=np.float64)
+        histories = {
+            name: _history(file, name, (len(time), len(coordinates[dimension])))
+            for name, (dimension, _, _) in VARIABLES.items()
+        }
         return Result(
-            time=_numbers(file, "time", ("time",)),
-            **{name: _names(file, name) for name in _COORDINATES if name != "time"},
-            **{name: _numbers(file, name, ("time", VARIABLES[name][0])) for name in VARIABLES},
+            time=time,
+            **coordinates,
+            **histories,
             outcome=header.outcome,
             checks=header.checks,
             facts=header.facts,
@@ -191,7 +200,7 @@ def read_header(path: str | PathLike[str]) -> Header:
 
 
 @contextmanager
-def _opened(path: str | PathLike[str]) -> Iterator[h5netcdf.File]:
+def _opened(path: str | PathLike[str]) -> Iterator[h5py.File]:
     """A result file, open; what is wrong with it is an InputError."""
     file = str(path)
     if not Path(path).exists():
@@ -199,7 +208,7 @@ def _opened(path: str | PathLike[str]) -> Iterator[h5netcdf.File]:
     if not Path(path).is_file():
         raise InputError("is not a file", field="file", value=file, fix="Give the path of a result.nc")
     try:
-        with h5netcdf.File(path, "r", decode_vlen_strings=True) as opened:
+        with h5py.File(path, "r") as opened:
             _require_result(opened, file)
             yield opened
     except InputError:
@@ -208,11 +217,10 @@ def _opened(path: str | PathLike[str]) -> Iterator[h5netcdf.File]:
         raise InputError(f"cannot be read: {_reason(error)}", field="file", value=file) from error
     except OSError as error:
         if "signature not found" in str(error):
-            fix = "Give a result.nc that axlespan wrote"
-            raise InputError("is not a netCDF-4 file", field="file", value=file, fix=fix) from error
+            raise InputError("is not a netCDF-4 file", field="file", value=file, fix=_GIVE_ONE) from error
         raise _damaged(file, error) from error
     except (ArithmeticError, AttributeError, LookupError, RuntimeError, TypeError, ValueError) as error:
-        # what h5py and h5netcdf say about bytes that do not fit together
+        # what h5py and json say about bytes that do not fit together
         raise _damaged(file, error) from error
 
 
@@ -223,51 +231,47 @@ def _damaged(file: str, error: Exception) -> InputError:
 
 def _reason(error: Exception) -> str:
     """One line of an exception; h5py wraps the words of interest in parentheses."""
-    text = getattr(error, "strerror", None) or str(error) or type(error).__name__
-    if text.startswith("Unable to") and "(" in text:
-        text = text[text.index("(") + 1 :].rstrip(")")
-    return " ".join(text.split())[:200]
+    text = " ".join(str(getattr(error, "strerror", None) or error).split()).strip("'\"")
+    if text.startswith(("Unable to", "Can't")) and "(" in text and text.endswith(")"):
+        text = text[text.index("(") + 1 : -1]
+    return text.partition(", sblock")[0][:200] or type(error).__name__
 
 
-def _require_result(file: h5netcdf.File, path: str) -> None:
-    form = file.attrs.get("format_version", 1)
-    number = int(np.asarray(form).item())
+def _require_result(file: h5py.File, path: str) -> None:
+    number = int(np.asarray(file.attrs.get("format_version", 1)).item())
     if number > FORMAT_VERSION:
-        writer = file.attrs.get("version", "a later version")
+        writer = _text(file, "version") or "of a later version"
         raise InputError(
             f"was written by axlespan {writer} in format {number}; this version reads up to {FORMAT_VERSION}",
             field="file",
             value=path,
             fix="pip install --upgrade axlespan",
         )
-    missing = [name for name in (*_COORDINATES, *VARIABLES) if name not in file.variables]
-    if missing or "outcome" not in file.attrs:
-        what = f"variable {missing[0]}" if missing else "attribute outcome"
-        fix = "Give a result.nc that axlespan wrote"
-        raise InputError(f"is not a result of axlespan: it has no {what}", field="file", value=path, fix=fix)
+    missing = [f"variable {name}" for name in (*_COORDINATES, *VARIABLES) if name not in file]
+    if "outcome" not in file.attrs:
+        missing.append("attribute outcome")
+    if missing:
+        rule = f"is not a result of axlespan: it has no {missing[0]}"
+        raise InputError(rule, field="file", value=path, fix=_GIVE_ONE)
 
 
-def _header(file: h5netcdf.File) -> Header:
-    text = {name: str(file.attrs.get(name, "")) for name in _attribute_names()}
-    outcome = Outcome(text["outcome"], text["outcome_message"], text["outcome_remedy"])
-    checks, facts = (json.loads(text[name] or "{}") for name in ("checks", "facts"))
-    return Header(text["case"] or None, text["version"], outcome, checks, facts)
+def _header(file: h5py.File) -> Header:
+    outcome = Outcome(_text(file, "outcome"), _text(file, "outcome_message"), _text(file, "outcome_remedy"))
+    checks, facts = (json.loads(_text(file, name) or "{}") for name in ("checks", "facts"))
+    return Header(_text(file, "case") or None, _text(file, "version"), outcome, checks, facts)
 
 
-def _attribute_names() -> tuple[str, ...]:
-    return "case", "version", "outcome", "outcome_message", "outcome_remedy", "checks", "facts"
+def _text(file: h5py.File, attribute: str) -> str:
+    value = np.asarray(file.attrs.get(attribute, "")).item()
+    return value.decode("utf-8") if isinstance(value, bytes) else str(value)
 
 
-def _numbers(file: h5netcdf.File, name: str, dimensions: tuple[str, ...]) -> FloatArray:
-    variable = file.variables[name]
-    if tuple(variable.dimensions) != dimensions:
-        raise ValueError(f"{name} has the dimensions {', '.join(variable.dimensions)}")
-    values = np.asarray(variable[...], dtype=np.float64)
-    expected = tuple(file.dimensions[dimension].size for dimension in dimensions)
-    if values.shape != expected:
-        raise ValueError(f"{name} has the shape {values.shape}, not {expected}")
+def _names(file: h5py.File, name: str) -> tuple[str, ...]:
+    return tuple(file[name].asstr()[...].tolist())
+
+
+def _history(file: h5py.File, name: str, shape: tuple[int, int]) -> FloatArray:
+    values = np.asarray(file[name][...], dtype=np.float64)
+    if values.shape != shape:
+        raise ValueError(f"{name} has the shape {values.shape}, not {shape}")
     return values
-
-
-def _names(file: h5netcdf.File, name: str) -> tuple[str, ...]:
-    return tuple(str(value) for value in np.asarray(file.variables[name][...]).ravel())

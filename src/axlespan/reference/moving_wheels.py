@@ -58,7 +58,8 @@ def cross_wheel_units(
         Increasing times from zero or later, (time,) [s]. The vehicles stand in static equilibrium on the
         irregularity at t = 0, bodies without vertical velocity.
     modes : int, optional
-        The contact force of a wheel with mass converges like 1 / modes.
+        Deflections converge with 10 to 20. The contact force of a wheel with mass holds undamped bending
+        waves of all modes: its value at an instant converges slowly, its mean over milliseconds soon.
     profile : Profile, optional
         Level when left out.
     modal_damping : float or sequence of float, optional
@@ -66,7 +67,7 @@ def cross_wheel_units(
     gravity : float, optional
         [m/s2].
     max_step : float, optional
-        Longest step of the integration [s].
+        Longest step of the integration [s]. Modes with periods below a few steps follow quasi-statically.
     stages : int, optional
         Stages of the Gauss method.
 

@@ -77,7 +77,7 @@ class Measured(Checked):
         if not (self.above < value < self.below and self.at_least <= value <= self.at_most):
             raise InputError(self._rule(), value=raw, fix=self._remedy(raw, value))
         if not self.is_believable(value) and not _has_unit(raw):
-            rule = f"looks wrong: without a unit it is {self.plainly(value)}"
+            rule = f"looks wrong: without a unit it is {self._in_full(value)}"
             raise InputError(rule, value=raw, fix=self._intended(value))
         return value
 
@@ -108,6 +108,10 @@ class Measured(Checked):
             return str(fraction)
         return f"{value:.6g} {self.dimension.unit}".strip()
 
+    def _in_full(self, value: float) -> str:
+        """Return a value with a unit, so that it is believed."""
+        return units.show(value, self.dimension) if self.dimension is units.RATIO else self.plainly(value)
+
     def _rule(self) -> str:
         if self.above == 0.0 and self.below == _INFINITY == self.at_most:
             return "must be positive"
@@ -133,7 +137,7 @@ class Measured(Checked):
 
     def _intended(self, value: float) -> str:
         """Say which unit makes the number believable."""
-        as_it_is = self.plainly(value)
+        as_it_is = self._in_full(value)
         for unit in self.dimension.shown + _ALSO_WRITTEN.get(self.dimension.unit, ()):
             if self.is_believable(value * units.factor(unit, self.dimension)):
                 return f"Write {value:.6g} {unit}; or {as_it_is}, if that is meant"

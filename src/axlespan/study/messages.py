@@ -86,9 +86,11 @@ def _explained(item: Any, path: tuple[Step, ...], source: Source) -> Iterator[In
         rule = _RULES.get(kind, item["msg"][:1].lower() + item["msg"][1:])
         word = source.word(path)
         alone = f"Write [{word}]" if word and rule == "must be a list" else None
-        yield source.blame(path, rule, alone or _to_write(item["loc"], path))
+        empty = _FILL if source.is_empty(path) else None
+        yield source.blame(path, rule, alone or _to_write(item["loc"], path) or empty)
 
 
+_FILL: Final = "Write a value, or delete the key"
 _RULES: Final = {
     "model_type": "must be a mapping",
     "model_attributes_type": "must be a mapping",
@@ -103,8 +105,8 @@ _RULES: Final = {
 
 def _filled(error: InputError, path: tuple[Step, ...], loc: Sequence[Step], source: Source) -> str | None:
     """Return the fix of an error; for an empty value, what to put there."""
-    if source.is_empty(path) and error.rule.startswith("must be"):
-        return _to_write(loc, path)
+    if source.is_empty(path):
+        return _to_write(loc, path) or _FILL
     return error.fix
 
 

@@ -21,6 +21,10 @@ _WORDS: Final[dict[str, tuple[str, str]]] = {
     r"unexpected end of stream": ("the quotes are not closed", "Close them at the end of the text"),
     r"undefined alias '(.*)'": ("no anchor &<0> stands before this alias", "Name what it repeats with &<0>"),
     r"unknown escape character": ("a backslash stands in double quotes", "Use single quotes"),
+    r"expected the node content, but found '([,:\]}])'": (
+        "a value is missing before <0>",
+        "Write it, or delete <0>",
+    ),
     r"found '([\]}])'": ("<0> closes nothing", "Delete it, or open it before"),
     r"found '?<block (?:mapping|sequence) start>": (_ASTRAY, _ALIKE),
     r"expected <block end>, but found '-'": (

@@ -1,8 +1,9 @@
 """Harwell-Boeing files in and out, as Ansys writes them with HBMAT (.matrix and .mapping).
 
 Source: Duff, Grimes, Lewis, "Users' Guide for the Harwell-Boeing Sparse Matrix Collection", CERFACS
-TR/PA/92/86 (1992); Ansys Command Reference, HBMAT. Ansys writes one number to a line, (I14) and (D25.15), the lower triangle as
-type RSA, a right-hand side behind it, and a mapping file with the columns Matrix Eqn, Node, DOF.
+TR/PA/92/86 (1992); Ansys Command Reference, HBMAT. Ansys writes one number to a line, (I14) and (D25.15),
+the lower triangle as type RSA, a right-hand side behind it, and a mapping file with the columns Matrix Eqn,
+Node, DOF.
 """
 
 from __future__ import annotations
@@ -133,22 +134,26 @@ def _numbers(lines: Lines, count: int, cards: int, field: _Field, what: str) -> 
         raise lines.error(rule, position=1)
     start = lines.position
     chunk, numbers = lines.take(cards, what)
-    words = chunk
-    if field.repeat > 1:
-        width, used = field.width, field.width * field.repeat
-        words = [
-            line[i : i + width] for line in chunk for i in range(0, min(len(line.rstrip()), used), width)
+    chunk = [line.upper().replace("D", "E") for line in chunk]
+    rows = [line.split() for line in chunk] if field.repeat > 1 else [[line] for line in chunk]
+    if sum(map(len, rows)) != count:  # numbers that touch each other are told apart by their columns
+        ends = [min(len(line.rstrip()), field.width * field.repeat) for line in chunk]
+        rows = [
+            [line[i : i + field.width] for i in range(0, end, field.width)]
+            for line, end in zip(chunk, ends, strict=True)
         ]
-    values = table_of([word.upper().replace("D", "E") for word in words], 1)
+    words = [word for row in rows for word in row]
+    values = table_of(words, 1)
     if values is None:
-        words = [_BARE_EXPONENT.sub(r"E\1", word.upper().replace("D", "E")) for word in words]
+        words = [_BARE_EXPONENT.sub(r"E\1", word) for word in words]
         values = table_of(words, 1)
+    owner = np.repeat(np.arange(cards), [len(row) for row in rows])
     if values is None:
         bad = next(i for i, word in enumerate(words) if not word.strip() or table_of([word], 1) is None)
-        raise lines.error(f"must be numbers ({what})", position=start + min(bad // field.repeat, cards - 1))
+        raise lines.error(f"must be numbers ({what})", position=start + int(owner[bad]))
     if len(values) != count:
         raise lines.error(f"must hold {count} {what}, not {len(values)}", position=start + max(0, cards - 1))
-    return values[:, 0], np.repeat(numbers, field.repeat)[:count]
+    return values[:, 0], numbers[owner]
 
 
 def write_harwell_boeing(

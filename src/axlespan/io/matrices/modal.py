@@ -138,7 +138,8 @@ def read_modal(
 
 def _modes(path: str | PathLike[str]) -> FloatArray:
     """Rows (n_mode, 3 or 4): mode, frequency, mass, damping ratio."""
-    lines, rows = Lines.of_file(path), []
+    lines = Lines.of_file(path)
+    rows: list[list[float]] = []
     for words in rows_of(lines):
         values = table_of(words, 1)
         if values is None or len(words) not in (3, 4) or (rows and len(words) != len(rows[0])):

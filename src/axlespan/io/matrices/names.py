@@ -104,9 +104,7 @@ class NodeTable:
         """
         wanted = np.asarray(labels, dtype=np.int64)
         found = np.searchsorted(self.labels, wanted)
-        missing = (found == len(self.labels)) | (
-            self.labels[np.minimum(found, len(self.labels) - 1)] != wanted
-        )
+        missing = ~np.isin(wanted, self.labels)
         if missing.any():
             raise InputError("has no coordinates", field="node", value=int(wanted[missing][0]))
         return np.asarray(found)

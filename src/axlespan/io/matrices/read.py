@@ -109,7 +109,8 @@ def read_matrices(
     try:
         return _model(matrices, names, table, held)
     except InputError as error:
-        place = Place(str(files.get((error.field or "").split(" ")[0], stiffness)))
+        sources = files if coordinates is None else {**files, "node": coordinates}
+        place = Place(str(sources.get((error.field or "").split(" ")[0], stiffness)))
         raise error.located(place) from None
 
 

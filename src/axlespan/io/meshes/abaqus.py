@@ -15,6 +15,7 @@ from axlespan.io.meshes.abaqus_keywords import Keyword, keywords_of
 from axlespan.io.meshes.abaqus_sets import Scope, SetDefinition, resolve
 from axlespan.io.meshes.abaqus_types import KIND_OF_TYPE, VTK_FROM_ABAQUS
 from axlespan.io.meshes.assemble import (
+    LARGEST_COORDINATE,
     ElementRows,
     Lookup,
     NodeRows,
@@ -154,7 +155,7 @@ class _Reader:
             raise InputError("is not a part of the file", field="*INSTANCE", value=part, place=keyword.place)
         rows = keyword.words()
         numbers = [numbers_of([row], width) for row, width in zip(rows, (3, 7), strict=False)]
-        if len(rows) > 2 or any(values is None or not np.isfinite(values).all() for values in numbers):
+        if len(rows) > 2 or any(v is None or not np.all(np.abs(v) <= LARGEST_COORDINATE) for v in numbers):
             rule = "must be followed by a translation (3 numbers) and a rotation (7 numbers), or by less"
             raise InputError(rule, field="*INSTANCE", value=name, place=keyword.place)
         moves = np.concatenate([np.zeros((0,)), *(values[0] for values in numbers if values is not None)])

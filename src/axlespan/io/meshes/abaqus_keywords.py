@@ -42,6 +42,10 @@ class Keyword:
         """Place of a data line."""
         return Place(self.file, int(self.numbers[row]))
 
+    def refused(self, rule: str) -> InputError:
+        """An error at the keyword line."""
+        return InputError(rule, field=f"*{self.name}", place=self.place)
+
     def required(self, parameter: str) -> str:
         """A parameter that must be there."""
         if not self.parameters.get(parameter):

@@ -103,7 +103,11 @@ class _Resolver:
 
     def _of(self, definition: SetDefinition) -> IntArray:
         keyword = definition.keyword
-        scope = self.instances[definition.instance] if definition.instance else self.own
+        scope = self.own
+        if definition.instance:
+            if definition.instance not in self.instances:
+                raise keyword.refused("must stand in the assembly, behind the instance that it names")
+            scope = self.instances[definition.instance]
         if not definition.is_list:
             lines = np.full(len(definition.labels), keyword.line)
             return scope.lookup.positions(definition.labels, lines, f"set '{definition.name}'") + scope.first

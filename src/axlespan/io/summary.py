@@ -1,0 +1,272 @@
+"""The summary of a run: what was run, its peaks, and what its self-checks say; ready for summary.json.
+
+Names are stable and carry their units. Values that a run does not have are null or left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import axlespan
+from axlespan.interaction.crossing import Crossing
+from axlespan.interaction.result import Result
+from axlespan.io.dof_units import is_rotation, unit_of
+from axlespan.io.peaks import Peak, force_ratios, highest, lowest
+from axlespan.io.strict_json import json_ready, to_json
+from axlespan.io.verdicts import verdicts
+
+#: Version of the layout of summary.json.
+FORMAT_VERSION = 1
+
+# Tension episodes and kinds of vehicle d.o.f. that are listed; result.nc has them all.
+_EPISODES, _PARTS = 20, 60
+
+_COMPUTATION = {
+    "coupling": "coupling",
+    "solver": "solver",
+    "structure_dofs": "structure_dofs",
+    "vehicle_dofs": "vehicle_dofs",
+    "path_dofs": "path_dofs",
+    "factor_bytes": "factor_bytes",
+    "iterations": "iterations",
+    "factorizations": "factorizations",
+    "wall_time": "wall_time_s",
+}
+
+
+@dataclass(frozen=True)
+class Description:
+    """What was run, for its readers."""
+
+    title: str = ""
+    structure: str = ""
+    structure_length_m: float | None = None
+    train: str = ""
+    vehicles: int | None = None
+    speed_m_per_s: float | None = None  # at the start
+    speed_end_m_per_s: float | None = None  # of a speed history
+
+
+def describe(crossing: Crossing, title: str = "") -> Description:
+    """The description of a crossing."""
+    speeds = crossing.motion.speeds
+    return Description(
+        title=title,
+        structure=crossing.structure.name,
+        structure_length_m=float(crossing.structure.length),
+        train=crossing.train.name,
+        vehicles=len(crossing.train.placements),
+        speed_m_per_s=float(speeds[0]),
+        speed_end_m_per_s=float(speeds[-1]),
+    )
+
+
+def summary(
+    result: Result,
+    description: Description | None = None,
+    *,
+    files: Sequence[str | PathLike[str]] = (),
+    version: str | None = None,
+) -> dict[str, Any]:
+    """The summary of a result, of a failed run's partial result too.
+
+    Parameters
+    ----------
+    result : Result
+    description : Description, optional
+        What was run; see :func:`describe`.
+    files : sequence of path, optional
+        Files written.
+    version : str, optional
+        Of axlespan; this one when left out.
+
+    Returns
+    -------
+    dict
+        Strict JSON: no NaN, no tuples.
+    """
+    checks = verdicts(result.checks)
+    good = result.outcome.code == "completed" and all(check["verdict"] == "pass" for check in checks)
+    content = {
+        "format": "axlespan summary",
+        "format_version": FORMAT_VERSION,
+        "version": version or axlespan.__version__,
+        "outcome": asdict(result.outcome),
+        "verdict": "pass" if good else "attention",
+        "run": asdict(description or Description()) | _run(result),
+        "computation": _computation(result),
+        "sensors": _sensors(result),
+        "contact_forces": _contact_forces(result),
+        "tension": _tension(result),
+        "vehicle_accelerations": _vehicle_accelerations(result),
+        "support_reactions": _reactions(result),
+        "checks": checks,
+        "notes": list(result.facts.get("notes") or ()),
+        "files": [str(file) for file in files],
+    }
+    ready: dict[str, Any] = json_ready(content)
+    return ready
+
+
+def write_summary(content: Mapping[str, Any], path: str | PathLike[str]) -> Path:
+    """Write a summary as JSON, whole or not at all."""
+    place = Path(path)
+    part = place.with_name(f".{place.name}.part")
+    try:
+        part.write_text(to_json(content, indent=2) + "\n", encoding="utf-8")
+        part.replace(place)
+    finally:
+        part.unlink(missing_ok=True)
+    return place
+
+
+def _time(result: Result, row: int) -> float:
+    """A time [s], without the last digits that a product of step and number leaves."""
+    return float(f"{result.time[row]:.12g}")
+
+
+def _run(result: Result) -> dict[str, Any]:
+    facts = result.facts
+    return {
+        "contacts": len(result.contact),
+        "time_step_s": facts.get("time_step"),
+        "steps": facts.get("steps"),
+        "completed_steps": facts.get("completed_steps"),
+        "simulated_s": _time(result, -1) if len(result.time) else 0.0,
+        "kept_times": len(result.time),
+        "alpha": facts.get("alpha"),
+        "beta": facts.get("beta"),
+        "gamma": facts.get("gamma"),
+        "footprint_m": facts.get("footprint"),
+    }
+
+
+def _computation(result: Result) -> dict[str, Any]:
+    facts = result.facts
+    known = {name: facts[key] for key, name in _COMPUTATION.items() if key in facts}
+    wall, steps = facts.get("wall_time"), facts.get("completed_steps")
+    known["steps_per_s"] = steps / wall if wall and steps else None
+    return known
+
+
+def _sensors(result: Result) -> dict[str, dict[str, Any]]:
+    return {
+        name: {
+            **_extremes(result, result.sensor_displacement, i, "displacement", "m"),
+            **_extremes(result, result.sensor_acceleration, i, "acceleration", "m_per_s2"),
+        }
+        for i, name in enumerate(result.sensor)
+    }
+
+
+def _extremes(result: Result, table: np.ndarray, column: int, quantity: str, unit: str) -> dict[str, Any]:
+    top, bottom = highest(table, [column]), lowest(table, [column])
+    if top is None or bottom is None:
+        return {}
+    return {
+        f"{quantity}_min_{unit}": bottom.value,
+        f"{quantity}_min_time_s": _time(result, bottom.row),
+        f"{quantity}_max_{unit}": top.value,
+        f"{quantity}_max_time_s": _time(result, top.row),
+    }
+
+
+def _contact_forces(result: Result) -> dict[str, Any]:
+    """Extremes of the train: in newtons, and over the static force.
+
+    Steps that were not kept have their extremes in ``*_over_all_steps_N``, without time and place.
+    """
+    ratios = force_ratios(result)
+    largest, smallest = highest(result.contact_force), lowest(result.contact_force)
+    top, bottom = highest(ratios), lowest(ratios)
+    if largest is None or smallest is None or top is None or bottom is None:
+        return {}
+    every = [
+        [value for value in (result.checks.get(f"{kind}_contact_force") or {}).values() if value is not None]
+        for kind in ("largest", "smallest")
+    ]
+    return {
+        "largest": _wheel(result, ratios, largest),
+        "smallest": _wheel(result, ratios, smallest),
+        "largest_over_all_steps_N": max([largest.value, *(v for v in every[0] if np.isfinite(v))]),
+        "smallest_over_all_steps_N": min([smallest.value, *(v for v in every[1] if np.isfinite(v))]),
+        "largest_ratio_to_static": _wheel(result, ratios, top),
+        "smallest_ratio_to_static": _wheel(result, ratios, bottom),
+        "largest_unloading": 1.0 - bottom.value,
+    }
+
+
+def _wheel(result: Result, ratios: np.ndarray, peak: Peak) -> dict[str, Any]:
+    """Which wheel, where, when."""
+    at = peak.row, peak.column
+    return {
+        "contact": result.contact[peak.column],
+        "force_N": result.contact_force[at],
+        "ratio_to_static": ratios[at],
+        "time_s": _time(result, peak.row),
+        "position_m": result.contact_position[at],
+    }
+
+
+def _tension(result: Result) -> dict[str, Any]:
+    episodes = list(result.checks.get("tension") or ())
+    shown = [
+        {
+            "contact": episode["contact"],
+            "start_s": episode["start"],
+            "stop_s": episode["stop"],
+            "position_m": episode["position"],
+            "largest_tension_N": episode["size"],
+        }
+        for episode in sorted(episodes, key=lambda episode: float(episode["start"]))[:_EPISODES]
+    ]
+    return {"episodes": int(result.checks.get("tension_episodes") or 0), "first": shown}
+
+
+def _vehicle_accelerations(result: Result) -> dict[str, dict[str, Any]]:
+    """Extremes of each part, such as body.z, over all vehicles.
+
+    Wheels are left out: the acceleration of one without mass means nothing.
+    """
+    groups: dict[str, list[int]] = {}
+    for i, name in enumerate(result.vehicle_dof):
+        part = name.partition(".")[2]
+        if not part.startswith("wheel"):
+            groups.setdefault(part, []).append(i)
+    found = {}
+    for part in list(groups)[:_PARTS]:
+        top, bottom = (find(result.vehicle_acceleration, groups[part]) for find in (highest, lowest))
+        if top is None or bottom is None:
+            continue
+        found[part] = {
+            "unit": unit_of("acceleration", part),
+            "min": bottom.value,
+            "min_vehicle": result.vehicle_dof[bottom.column].partition(".")[0],
+            "min_time_s": _time(result, bottom.row),
+            "max": top.value,
+            "max_vehicle": result.vehicle_dof[top.column].partition(".")[0],
+            "max_time_s": _time(result, top.row),
+        }
+    return found
+
+
+def _reactions(result: Result) -> dict[str, dict[str, Any]]:
+    found = {}
+    for i, name in enumerate(result.support):
+        top, bottom = highest(result.support_reaction, [i]), lowest(result.support_reaction, [i])
+        if top is None or bottom is None:
+            continue
+        unit = "N_m" if is_rotation(name) else "N"
+        found[name] = {
+            f"min_{unit}": bottom.value,
+            "min_time_s": _time(result, bottom.row),
+            f"max_{unit}": top.value,
+            "max_time_s": _time(result, top.row),
+        }
+    return found
