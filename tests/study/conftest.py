@@ -70,17 +70,26 @@ def complaint(loaded: Callable[..., LoadedCase]) -> Callable[..., str]:
     return complain
 
 
-TRAIN = FOOTBRIDGE[FOOTBRIDGE.index("  - vehicle") : FOOTBRIDGE.index("crossing:")]
-STRUCTURE = FOOTBRIDGE[FOOTBRIDGE.index("structure:") : FOOTBRIDGE.index("train:")]
+BLOCKS = {
+    "<train>": FOOTBRIDGE[FOOTBRIDGE.index("  - vehicle") : FOOTBRIDGE.index("crossing:")],
+    "<structure>": FOOTBRIDGE[FOOTBRIDGE.index("structure:") : FOOTBRIDGE.index("train:")],
+    "<all>": FOOTBRIDGE,
+}
+
+
+@pytest.fixture
+def blocks() -> dict[str, str]:
+    """Large pieces of the case, by their names."""
+    return {name: text.removesuffix("\n") for name, text in BLOCKS.items()}
 
 
 @pytest.fixture
 def with_train(loaded: Callable[..., LoadedCase]) -> Callable[..., LoadedCase]:
     """Load the case with another train."""
-    return lambda block, **options: loaded((TRAIN, block), **options)
+    return lambda block, **options: loaded((BLOCKS["<train>"], block), **options)
 
 
 @pytest.fixture
 def with_structure(loaded: Callable[..., LoadedCase]) -> Callable[..., LoadedCase]:
     """Load the case with another structure."""
-    return lambda block, **options: loaded((STRUCTURE, block), **options)
+    return lambda block, **options: loaded((BLOCKS["<structure>"], block), **options)

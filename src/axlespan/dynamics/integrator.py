@@ -29,22 +29,40 @@ FloatArray = npt.NDArray[np.float64]
 _DENSE_UP_TO = 200
 
 
-@dataclass
+@dataclass(eq=False)
 class State:
-    """Displacements, velocities and accelerations (n,) or (n, k) at one time."""
+    """Displacements, velocities and accelerations at one time, stacked so that one product advances all three."""
 
-    u: FloatArray  # [m]
-    v: FloatArray  # [m/s]
-    a: FloatArray  # [m/s^2]
+    values: FloatArray  # (3, n) or (3, n, k): [m, m/s, m/s^2]
 
     @classmethod
     def at_rest(cls, shape: tuple[int, ...]) -> State:
-        """All zero."""
-        return cls(np.zeros(shape), np.zeros(shape), np.zeros(shape))
+        """All zero, for d.o.f. of shape (n,) or (n, k)."""
+        return cls(np.zeros((3, *shape)))
+
+    @classmethod
+    def of(cls, u: FloatArray, v: FloatArray, a: FloatArray) -> State:
+        """From displacements, velocities and accelerations of equal shapes."""
+        return cls(np.array([u, v, a], dtype=np.float64))
+
+    @property
+    def u(self) -> FloatArray:
+        """Displacements [m], a view."""
+        return self.values[0]
+
+    @property
+    def v(self) -> FloatArray:
+        """Velocities [m/s], a view."""
+        return self.values[1]
+
+    @property
+    def a(self) -> FloatArray:
+        """Accelerations [m/s^2], a view."""
+        return self.values[2]
 
     def copy(self) -> State:
         """An independent copy."""
-        return State(self.u.copy(), self.v.copy(), self.a.copy())
+        return State(self.values.copy())
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +88,7 @@ class Matrices:
 
 
 class Integrator:
-    """The alpha method for one body and one time step; the factor of A is held here.
+    """The alpha method for one body and one time step: its coefficients, matrices and the factor of A.
 
     Parameters
     ----------
@@ -85,8 +103,8 @@ class Integrator:
 
     Notes
     -----
-    A step is :meth:`step`, or in two halves :meth:`predict` and :meth:`correct` with contact forces
-    solved for in between.
+    The integrator does not change; what evolves is a :class:`State`. A step is :meth:`step`, or a
+    :class:`Stepper` makes it in two halves, with contact forces solved for in between.
     """
 
     def __init__(self, matrices: Matrices, method: Alpha, time_step: float, *, solver: str = "auto") -> None:
@@ -94,11 +112,22 @@ class Integrator:
         beta, gamma, dt = method._beta, method._gamma, self.time_step
         self.weight_c, self.weight_p = 1.0 + method.alpha, -method.alpha
         self.u_from_a, self.v_from_a = beta * dt**2, gamma * dt
-        self._u_old, self._v_old = (0.5 - beta) * dt**2, (1.0 - gamma) * dt
+        late_u, late_v = (0.5 - beta) * dt**2, (1.0 - gamma) * dt
+        wc, wp = self.weight_c, self.weight_p
+        # Rows: ũ, ṽ, (1+α) ũ - α u, (1+α) ṽ - α u̇, from u, u̇, ü of the step before.
+        self.prediction = np.array(
+            [
+                [1.0, dt, late_u],
+                [0.0, 1.0, late_v],
+                [wc + wp, wc * dt, wc * late_u],
+                [0.0, wc + wp, wc * late_v],
+            ]
+        )
+        self.has_damping = matrices.C is not None or matrices.C_low_rank is not None
         self.effective = self._effective_matrix()
         self.factor = self.factor_of(self.effective, solver)
-        self._K = _operand(matrices.K)
-        self._C = None if matrices.C is None else _operand(matrices.C)
+        self.K = _operand(matrices.K)
+        self.C = None if matrices.C is None else _operand(matrices.C)
 
     @property
     def size(self) -> int:
@@ -121,49 +150,6 @@ class Integrator:
         scaled = LowRank(low_rank.vectors, self.weight_c * self.v_from_a * low_rank.coefficients)
         return UpdatedFactor(factor, scaled)
 
-    def predict(self, state: State, force: FloatArray) -> None:
-        """Advance the state in place as if the force were all.
-
-        Parameters
-        ----------
-        state : State
-            At the step before; on return, at the new time.
-        force : array
-            (1+α) F^c - α F^p, of the shape of the state. It is overwritten.
-        """
-        dt, wc, wp = self.time_step, self.weight_c, self.weight_p
-        u, v, a = state.u, state.v, state.a
-        if self._C is not None or self.matrices.C_low_rank is not None:
-            velocity = wp * v
-            v += self._v_old * a
-            velocity += wc * v
-            if self._C is not None:
-                force -= self._C @ velocity
-            if self.matrices.C_low_rank is not None:
-                force -= self.matrices.C_low_rank.apply(velocity)
-            drift = dt * (v - self._v_old * a)
-        else:
-            drift = dt * v
-            v += self._v_old * a
-        drift += self._u_old * a
-        if wp:
-            displacement = wc * drift
-            displacement += u  # (1+α) ũ - α u = u + (1+α) drift
-            force -= self._K @ displacement
-            u += drift
-        else:
-            u += drift
-            force -= self._K @ u
-        self.factor.solve(force, out=a)
-        u += self.u_from_a * a
-        v += self.v_from_a * a
-
-    def correct(self, state: State, acceleration: FloatArray) -> None:
-        """Add an acceleration (that of the contact forces) to the state at the new time, in place."""
-        state.a += acceleration
-        state.u += self.u_from_a * acceleration
-        state.v += self.v_from_a * acceleration
-
     def step(self, state: State, force_previous: FloatArray, force_current: FloatArray) -> State:
         """The state one time step later, under forces (n,) at both ends of the step [N].
 
@@ -176,17 +162,80 @@ class Integrator:
         >>> float(later.a[0])  # 1 / (1 + 4 β Δt²)
         0.9999000099990001
         """
-        new = state.copy()
-        self.predict(new, self.weight_c * force_current + self.weight_p * force_previous)
-        return new
+        stepper = Stepper(self, state.copy())
+        stepper.predict(self.weight_c * force_current + self.weight_p * force_previous)
+        stepper.finish()
+        return stepper.state
 
-    def columns(self, loads: FloatArray) -> FloatArray:
-        """A⁻¹ loads for loads (n, m), a few columns at a time."""
-        result = np.empty(loads.shape)
-        for begin in range(0, loads.shape[1], 64):
-            block = np.ascontiguousarray(loads[:, begin : begin + 64])
-            result[:, begin : begin + 64] = self.factor.solve(block)
+    def columns(self, dofs: npt.NDArray[np.int64]) -> FloatArray:
+        """Columns of A⁻¹ (m, n) at d.o.f. (m,), each in one piece; a few are solved for at a time."""
+        result = np.empty((len(dofs), self.size))
+        for begin in range(0, len(dofs), 64):
+            some = dofs[begin : begin + 64]
+            loads = np.zeros((self.size, len(some)))
+            loads[some, np.arange(len(some))] = 1.0
+            result[begin : begin + len(some)] = self.factor.solve(loads).T
         return result
+
+
+class Stepper:
+    """A body on its way: a state, and the arrays that a step needs, made once.
+
+    A step is ``predict``, as if the given force were all; ``add`` for accelerations that contact forces bring;
+    ``finish``.
+    """
+
+    def __init__(self, integrator: Integrator, state: State) -> None:
+        self.integrator, self.state = integrator, state
+        shape = state.values.shape[1:]
+        self._rows = 4 if integrator.has_damping else 3
+        self._predicted = np.empty((self._rows, *shape))
+        self._flat_predicted = self._predicted.reshape(self._rows, -1)
+        self._matrix = np.ascontiguousarray(integrator.prediction[: self._rows])
+        self._update = np.array([integrator.u_from_a, integrator.v_from_a]).reshape(2, *(1 for _ in shape))
+        self.acceleration = np.zeros(shape)  # of the new time, as far as it is known
+        self._product = np.empty(shape)
+
+    def predict(self, force: FloatArray) -> None:
+        """Advance under (1+α) F^c - α F^p [N], of the shape of the d.o.f.; the force is overwritten."""
+        integrator, predicted = self.integrator, self._predicted
+        values = self.state.values
+        np.matmul(self._matrix, values.reshape(3, -1), out=self._flat_predicted)
+        force -= _product(integrator.K, predicted[2], self._product)
+        if integrator.C is not None:
+            force -= _product(integrator.C, predicted[3], self._product)
+        if integrator.matrices.C_low_rank is not None:
+            force -= integrator.matrices.C_low_rank.apply(predicted[3])
+        integrator.factor.solve(force, out=self.acceleration)
+
+    def displacement(self, where: npt.NDArray[np.int64]) -> FloatArray:
+        """Displacements at flat positions (any shape) at the new time, as far as it is known."""
+        result = self.acceleration.take(where)
+        result *= self.integrator.u_from_a
+        result += self._predicted[0].take(where)
+        return result
+
+    def add(self, acceleration: FloatArray) -> None:
+        """Add the acceleration that contact forces bring."""
+        self.acceleration += acceleration
+
+    def hold(self) -> None:
+        """Take the state as it is for the new time: displacements read it as if just computed."""
+        self.acceleration[...] = self.state.a
+        self._predicted[0] = self.state.u - self.integrator.u_from_a * self.state.a
+
+    def finish(self) -> None:
+        """Complete the state at the new time."""
+        values = self.state.values
+        np.multiply(self._update, self.acceleration, out=values[:2])
+        values[:2] += self._predicted[:2]
+        values[2] = self.acceleration
+
+
+def _product(matrix: FloatArray | sp.csr_array, x: FloatArray, out: FloatArray) -> FloatArray:
+    if isinstance(matrix, np.ndarray):
+        return np.dot(matrix, x, out=out)
+    return np.asarray(matrix @ x)
 
 
 def _operand(matrix: sp.csr_array) -> FloatArray | sp.csr_array:

@@ -34,6 +34,7 @@ class FlatGeometry:
     center: FloatArray  # (n_e, 3) mean of the nodes [m]
     plane: FloatArray  # (n_e, n_node, 2) nodes in the axes x, y from the center [m]
     height: FloatArray  # (n_e, n_node) of the nodes above the plane [m]
+    first_side: FloatArray  # (n_e, 3) from node 1 to node 2, in global axes [m]
 
     @property
     def node_count(self) -> int:
@@ -44,6 +45,12 @@ class FlatGeometry:
     def sides(self) -> FloatArray:
         """Vectors (n_e, n_side, 2) from node k to node k + 1 in the plane [m]."""
         return np.roll(self.plane, -1, axis=1) - self.plane
+
+    @cached_property
+    def lengths(self) -> FloatArray:
+        """Lengths (n_e, n_side) of the sides in the plane [m]."""
+        length: FloatArray = np.linalg.norm(self.sides, axis=2)
+        return length
 
     @cached_property
     def area(self) -> FloatArray:
@@ -65,7 +72,7 @@ def flatten(kind: ShellKind, coordinates: npt.ArrayLike) -> FlatGeometry:
         If the shape of the coordinates is wrong, a number is not finite or an element has no area.
     """
     points = check_coordinates(kind, coordinates)
-    first, second = _spans(points)
+    first, second = diagonals(points)
     normal = np.cross(first, second)
     size = np.linalg.norm(normal, axis=1)
     span = np.abs(points - points.mean(axis=1, keepdims=True)).max(axis=(1, 2))
@@ -83,7 +90,7 @@ def flatten(kind: ShellKind, coordinates: npt.ArrayLike) -> FlatGeometry:
     axes = np.stack([x, np.cross(normal, x), normal], axis=1)
     center = points.mean(axis=1)
     local = (points - center[:, None]) @ axes.transpose(0, 2, 1)
-    return FlatGeometry(axes, center, local[..., :2], local[..., 2])
+    return FlatGeometry(axes, center, local[..., :2], local[..., 2], points[:, 1] - points[:, 0])
 
 
 def check_coordinates(kind: str, coordinates: npt.ArrayLike) -> FloatArray:
@@ -95,15 +102,52 @@ def check_coordinates(kind: str, coordinates: npt.ArrayLike) -> FloatArray:
         If the kind is unknown, the shape is wrong or a number is not finite.
     """
     if kind not in NODE_COUNT:
-        raise InputError("must be a kind of shell element", field="kind", value=kind, fix="Use shell3 or shell4")
+        raise InputError(
+            "must be a kind of shell element", field="kind", value=kind, fix="Use shell3 or shell4"
+        )
     points = np.asarray(coordinates, dtype=float)
     if points.ndim != 3 or points.shape[1:] != (NODE_COUNT[kind], 3):
         raise InputError(
             f"must have the shape (n_e, {NODE_COUNT[kind]}, 3)", field="coordinates", value=points.shape
         )
     if not np.all(np.isfinite(points)):
-        raise InputError("must be finite", field="coordinates", value=np.argwhere(~np.isfinite(points))[0].tolist())
+        raise InputError(
+            "must be finite", field="coordinates", value=np.argwhere(~np.isfinite(points))[0].tolist()
+        )
     return points
+
+
+def prepared(
+    kind: ShellKind, coordinates: npt.ArrayLike, thickness: npt.ArrayLike, offset: npt.ArrayLike
+) -> tuple[FlatGeometry, FloatArray, FloatArray]:
+    """Geometry, thicknesses (n_e,) and offsets (n_e,) of elements, checked.
+
+    Raises
+    ------
+    InputError
+        If the coordinates are not usable, an element has no area or a thickness is not positive.
+    """
+    geometry = flatten(kind, coordinates)
+    t = per_element(thickness, len(geometry.area), "thickness")
+    if not np.all(t > 0.0):
+        raise InputError("must be positive", field="thickness", value=float(t.min()))
+    return geometry, t, per_element(offset, len(t), "offset")
+
+
+def per_element(value: npt.ArrayLike, n_e: int, field: str) -> FloatArray:
+    """Return one finite number per element, from one for all or one for each.
+
+    Raises
+    ------
+    InputError
+        If there is another number of values, or one is not finite.
+    """
+    array = np.asarray(value, dtype=float)
+    if array.ndim and array.shape != (n_e,):
+        raise InputError(f"must be one number or one per element ({n_e})", field=field, value=array.shape)
+    if not np.all(np.isfinite(array)):
+        raise InputError("must be finite", field=field, value=value)
+    return np.broadcast_to(array, (n_e,))
 
 
 def link_matrices(
@@ -157,15 +201,17 @@ def _drilling(geometry: FlatGeometry, side_normals: FloatArray | None) -> FloatA
         own[:, np.arange(n), np.arange(n)] = normal[:, None]
         return own
     if side_normals.shape != (n_e, n, 3):
-        raise InputError(f"must have the shape ({n_e}, {n}, 3)", field="side_normals", value=side_normals.shape)
+        raise InputError(
+            f"must have the shape ({n_e}, {n}, 3)", field="side_normals", value=side_normals.shape
+        )
     difference = np.roll(np.eye(n), 1, axis=1) - np.eye(n)
     spread = np.linalg.pinv(difference)
     drill: FloatArray = np.einsum("as,esi,sb->eabi", spread, side_normals, difference)
     return drill + normal[:, None, None] / n
 
 
-def _spans(points: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Two sides of a triangle, the diagonals of a quadrilateral."""
+def diagonals(points: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Vectors (n_e, 3) whose cross product is twice the area: diagonals, or two sides of a triangle."""
     if points.shape[1] == 3:
         return points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]
     return points[:, 2] - points[:, 0], points[:, 3] - points[:, 1]

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from axlespan.elements.shell_geometry import per_element
 from axlespan.errors import InputError
 
 FloatArray = npt.NDArray[np.float64]
@@ -93,7 +94,9 @@ class ShellSection:
     thickness: FloatArray  # t (n_e,) [m]
 
 
-def section(material: ShellMaterial, axes: FloatArray, side: FloatArray, thickness: FloatArray) -> ShellSection:
+def section(
+    material: ShellMaterial, axes: FloatArray, side: FloatArray, thickness: FloatArray
+) -> ShellSection:
     """Return A = t C, D = t³/12 C and S = κ t G in the axes of each element.
 
     Parameters
@@ -114,7 +117,7 @@ def section(material: ShellMaterial, axes: FloatArray, side: FloatArray, thickne
     """
     n = len(axes)
     e1, e2, nu, g12, g13, g23, angle = (
-        _per_element(value, n, name)
+        per_element(value, n, name)
         for value, name in (
             (material.youngs_modulus_1, "youngs_modulus_1"),
             (material.youngs_modulus_2, "youngs_modulus_2"),
@@ -146,13 +149,6 @@ def section(material: ShellMaterial, axes: FloatArray, side: FloatArray, thickne
     transverse = rotation.transpose(0, 2, 1) @ (np.stack([g13, g23], 1)[:, :, None] * rotation)
     t = thickness[:, None, None]
     return ShellSection(t * plane, t**3 / 12.0 * plane, material.shear_factor * t * transverse, thickness)
-
-
-def _per_element(value: float | FloatArray, n: int, field: str) -> FloatArray:
-    array = np.asarray(value, dtype=float)
-    if array.ndim and array.shape != (n,):
-        raise InputError(f"must be one number or one per element ({n})", field=field, value=array.shape)
-    return np.broadcast_to(array, (n,))
 
 
 def _direction_angle(material: ShellMaterial, axes: FloatArray, side: FloatArray) -> FloatArray:

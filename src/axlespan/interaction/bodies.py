@@ -1,8 +1,8 @@
-"""The two bodies in time: the structure with its path columns, and the fleet of vehicles.
+"""The two bodies in time: the structure, loaded along its path, and the fleet of vehicles.
 
-Both advance without contact (``predict``) and take the contact forces afterwards (``correct``). What the
-contact system needs of them is their compliance at the wheels, which comes from a few columns of A⁻¹,
-computed once.
+Both advance without the new contact forces (``predict``) and take them afterwards (``take``). Several
+crossings of one structure go side by side: the structure's state then has a column for each of them, and
+the fleet holds the vehicles of all.
 """
 
 from __future__ import annotations
@@ -12,26 +12,19 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from axlespan.dynamics.alpha import Alpha
-from axlespan.dynamics.integrator import Integrator, Matrices, State
+from axlespan.dynamics.integrator import Integrator, Matrices, State, Stepper
+from axlespan.interaction.path_columns import PathColumns
 from axlespan.interaction.plan import Fleet
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-# Up to this many entries, products with all path columns are quicker than with a selection.
-_WHOLE_PRODUCT_UP_TO = 100_000
+# Up to this many entries a dense product is quicker than a sparse one.
+_DENSE_UP_TO = 10_000
 
 
-class StructureBody:
-    """The structure in time, loaded along its path.
-
-    Parameters
-    ----------
-    matrices, method, time_step, solver
-        As for :class:`~axlespan.dynamics.integrator.Integrator`.
-    path_dofs : array (n_path,)
-        D.o.f. that the running lines use; their columns of A⁻¹ are computed here.
-    """
+class PreparedStructure:
+    """A structure, factored for one method and time step: serves every train, speed and irregularity."""
 
     def __init__(
         self,
@@ -43,111 +36,173 @@ class StructureBody:
         solver: str = "auto",
     ) -> None:
         self.integrator = Integrator(matrices, method, time_step, solver=solver)
-        self.path_dofs = path_dofs
-        n, n_path = matrices.size, len(path_dofs)
-        self.local = np.full(n, 0, dtype=np.int64)  # d.o.f. -> position on the path
-        self.local[path_dofs] = np.arange(n_path)
-        self.columns = self._path_columns(n, n_path)
-        scale = self.integrator.weight_c * self.integrator.u_from_a
-        # Displacement of path d.o.f. per contact force on path d.o.f.: (1+α) β Δt² R A⁻¹ Rᵀ.
-        self.compliance = scale * self.columns[:, path_dofs]
-        self.compliance = 0.5 * (self.compliance + self.compliance.T)
-        self.state = State.at_rest((n,))
-        self.path_load = np.zeros(n_path)  # Eᵀ X of the step before
-        self._force = np.zeros(n)
+        self.columns = PathColumns(self.integrator, path_dofs)
 
-    def _path_columns(self, n: int, n_path: int) -> FloatArray:
-        """A⁻¹ Rᵀ, transposed (n_path, n) so that a column lies in one piece."""
-        result = np.empty((n_path, n))
-        for begin in range(0, n_path, 64):
-            dofs = self.path_dofs[begin : begin + 64]
-            loads = np.zeros((n, len(dofs)))
-            loads[dofs, np.arange(len(dofs))] = 1.0
-            result[begin : begin + len(dofs)] = self.integrator.factor.solve(loads).T
+
+class StructureBody:
+    """The structure in time, under the wheels of ``lanes`` crossings."""
+
+    def __init__(
+        self, prepared: PreparedStructure, states: list[State], path_loads: list[FloatArray]
+    ) -> None:
+        self.integrator, self.columns = prepared.integrator, prepared.columns
+        self.lanes = len(states)
+        single = self.lanes == 1
+        values = states[0].values.copy() if single else np.stack([state.values for state in states], axis=-1)
+        self.stepper = Stepper(self.integrator, State(np.ascontiguousarray(values)))
+        n = self.integrator.size
+        self._shape = (n,) if single else (n, self.lanes)
+        self._force = np.zeros(self._shape)
+        # Eᵀ X of the step before, on the d.o.f. that were held then.
+        self._loaded = np.arange(n)
+        self._load = path_loads[0].copy() if single else np.stack(path_loads, axis=-1)
+
+    @property
+    def state(self) -> State:
+        """The state at the last completed step."""
+        return self.stepper.state
+
+    def lane(self, lane: int) -> State:
+        """The state of one crossing; a view if it is the only one."""
+        values = self.state.values
+        return State(values if values.ndim == 2 else np.ascontiguousarray(values[:, :, lane]))
+
+    def load_of(self, lane: int) -> FloatArray:
+        """Eᵀ X (n,) of one crossing at the last completed step."""
+        result = np.zeros(self.integrator.size)
+        result[self._loaded] = self._load if self._load.ndim == 1 else self._load[:, lane]
         return result
 
-    def path_force(self, local: IntArray, weights: FloatArray, forces: FloatArray) -> FloatArray:
-        """Eᵀ X (n_path,) for wheels with rows (n_wheel, n_local) and forces (n_wheel,)."""
-        loads = (weights * forces[:, None]).ravel()
-        return np.asarray(np.bincount(local.ravel(), loads, minlength=len(self.path_dofs)), dtype=np.float64)
-
-    def predict(self, external: FloatArray, known_load: FloatArray | None = None) -> None:
-        """Advance under the external force (n,) already weighted, the contact of the step before, and known wheel loads."""
+    def predict(self, external: FloatArray | None, known: FloatArray | None) -> None:
+        """Advance under the weighted external force (n,), the contact of the step before and known wheel loads."""
         force = self._force
-        force[:] = external
-        weight_c, weight_p = self.integrator.weight_c, self.integrator.weight_p
-        if weight_p:
-            force[self.path_dofs] -= weight_p * self.path_load
-        if known_load is not None:
-            force[self.path_dofs] -= weight_c * known_load
-        self.integrator.predict(self.state, force)
+        if external is None:
+            force[...] = 0.0
+        else:
+            force[...] = external if force.ndim == 1 else external[:, None]
+        if self.integrator.weight_p:
+            force[self._loaded] -= self.integrator.weight_p * self._load
+        if known is not None:
+            force[self.columns.held] -= self.integrator.weight_c * known
+        self.stepper.predict(force)
 
-    def under(self, dofs: IntArray, weights: FloatArray) -> FloatArray:
-        """Displacement E u (n_wheel,) for rows (n_wheel, n_local)."""
-        return np.asarray((self.state.u.take(dofs) * weights).sum(axis=1))
+    def gather(self, flat: IntArray, weights: FloatArray) -> FloatArray:
+        """Displacements E u (n_wheel,) at the new time as far as known, for rows (n_wheel, n_local)."""
+        values = self.stepper.displacement(flat)
+        values *= weights
+        return np.asarray(values.sum(axis=1))
 
-    def correct(self, load: FloatArray) -> None:
-        """Take the contact load Eᵀ X (n_path,) of the coupled wheels at the new time."""
-        self.integrator.correct(self.state, self._response(load))
+    def path_load(self, flat: IntArray, weights: FloatArray, forces: FloatArray) -> FloatArray:
+        """Eᵀ X (n_held,) or (n_held, k) of wheels with rows (n_wheel, n_local) and forces (n_wheel,)."""
+        n_held = len(self.columns.held)
+        loads = (weights * forces[:, None]).ravel()
+        # A row may name d.o.f. with zero weight that are not held; they fall behind the held ones or add zero.
+        total = np.asarray(np.bincount(flat.ravel(), loads, minlength=n_held * self.lanes), dtype=np.float64)
+        total = total[: n_held * self.lanes]
+        return total if self.lanes == 1 else total.reshape(n_held, self.lanes)
 
-    def _response(self, load: FloatArray) -> FloatArray:
-        weight = -self.integrator.weight_c
-        if self.columns.size <= _WHOLE_PRODUCT_UP_TO:
-            return (weight * load) @ self.columns
-        active = np.flatnonzero(load)
-        return (weight * load[active]) @ self.columns[active]
+    def take(self, coupled: FloatArray | None, known: FloatArray | None) -> None:
+        """Take the loads (n_held, …) of the coupled wheels, and complete the step; known loads are in already."""
+        self._loaded = self.columns.held
+        if coupled is not None:
+            self.stepper.add(self.columns.response(coupled))
+        if coupled is None or known is None:
+            given = coupled if coupled is not None else known
+            self._load = given if given is not None else np.zeros((len(self._loaded), *self._shape[1:]))
+        else:
+            self._load = coupled + known
+        self.stepper.finish()
+
+    def take_solved(self, coupled: FloatArray, known: FloatArray | None) -> None:
+        """Complete the step when the response to the coupled wheels is in the acceleration already."""
+        self._loaded = self.columns.held
+        self._load = coupled if known is None else coupled + known
+        self.stepper.finish()
+
+    def put(self, values: FloatArray, load: FloatArray) -> None:
+        """Set the state (3, n) at the new time and Eᵀ X (n,), computed elsewhere, of a single crossing."""
+        self.state.values[...] = values
+        self.stepper.hold()
+        self._loaded, self._load = np.arange(self.integrator.size), load
 
 
 class FleetBody:
-    """All vehicles of a train in time; displacements from the static position on level ground."""
+    """All vehicles of one or several trains in time; displacements from the static position on level ground."""
 
-    def __init__(self, fleet: Fleet, method: Alpha, time_step: float, *, solver: str = "auto") -> None:
+    def __init__(
+        self, fleet: Fleet, method: Alpha, time_step: float, state: State, forces: FloatArray
+    ) -> None:
         self.fleet = fleet
-        self.integrator = Integrator(fleet.matrices, method, time_step, solver=solver)
-        n, n_coupled = fleet.matrices.size, len(fleet.dofs)
-        loads = np.zeros((n, n_coupled))
-        loads[fleet.dofs, np.arange(n_coupled)] = 1.0
-        columns = self.integrator.columns(loads)
+        self.integrator = Integrator(fleet.matrices, method, time_step)
+        self.stepper = Stepper(self.integrator, state.copy())
+        columns = self._unit_responses()
         scale = self.integrator.weight_c * self.integrator.u_from_a
-        self.compliance = _same_vehicle(scale * columns[fleet.dofs], fleet.vehicle_of)
-        self.stiffness = _block_inverse(self.compliance, fleet.vehicle_of)
-        weighted = self.integrator.weight_c * columns
-        self._columns = weighted if weighted.size <= _WHOLE_PRODUCT_UP_TO else sp.csr_array(_pruned(weighted))
-        self.state = State.at_rest((n,))
+        self.compliance = scale * columns[fleet.dofs]
+        self.stiffness = _operand(_block_inverse(self.compliance, fleet.vehicle_of))
+        self._columns = _operand(self.integrator.weight_c * columns)
         self.static = fleet.weight[fleet.coupled]  # (n_coupled,) [N]
-        self.forces = self.static.copy()  # of the step before
-        self._force = np.zeros(n)
+        self.forces = forces.copy()  # (n_coupled,) of the last completed step [N]
+        self._force = np.zeros(fleet.matrices.size)
+
+    def _unit_responses(self) -> sp.csr_array:
+        """A⁻¹ I_Xᵀ (n, n_coupled), one block for each vehicle: wheels of the same rank are solved for together."""
+        fleet, n = self.fleet, self.fleet.matrices.size
+        owner = fleet.vehicle_of
+        rank = np.arange(len(owner)) - np.searchsorted(owner, owner)
+        n_wheel = int(rank.max(initial=-1)) + 1
+        loads = np.zeros((n, n_wheel))
+        loads[fleet.dofs, rank] = 1.0
+        responses = self.integrator.factor.solve(loads)
+        row_owner = fleet.owner_of_dof
+        rows, columns = [], []
+        for wheel in range(len(owner)):
+            own = np.flatnonzero(row_owner == owner[wheel])
+            rows.append(own)
+            columns.append(np.full(len(own), wheel))
+        row, column = np.concatenate(rows), np.concatenate(columns)
+        return sp.csr_array(
+            sp.coo_array((responses[row, rank[column]], (row, column)), shape=(n, len(owner)))
+        )
+
+    @property
+    def state(self) -> State:
+        """The state at the last completed step."""
+        return self.stepper.state
 
     def predict(self) -> None:
         """Advance without the contact forces of the new time."""
-        force, integrator = self._force, self.integrator
-        force[:] = 0.0
-        force[self.fleet.dofs] = integrator.weight_p * self.forces - self.static
-        integrator.predict(self.state, force)
+        force = self._force
+        force[...] = 0.0
+        force[self.fleet.dofs] = self.integrator.weight_p * self.forces - self.static
+        self.stepper.predict(force)
 
     def at_wheels(self) -> FloatArray:
-        """Displacements (n_coupled,) of the contact points."""
-        return self.state.u.take(self.fleet.dofs)
+        """Displacements (n_coupled,) of the contact points at the new time as far as known."""
+        return self.stepper.displacement(self.fleet.dofs)
 
-    def correct(self, forces: FloatArray) -> None:
-        """Take the contact forces (n_coupled,) of the new time."""
-        self.integrator.correct(self.state, np.asarray(self._columns @ forces))
+    def take(self, forces: FloatArray) -> None:
+        """Take the contact forces (n_coupled,) of the new time, and complete the step."""
+        self.stepper.add(np.asarray(self._columns @ forces))
+        self.stepper.finish()
+        self.forces = forces
+
+    def put(self, values: FloatArray, forces: FloatArray) -> None:
+        """Set the state (3, n) at the new time and the contact forces (n_coupled,), computed elsewhere."""
+        self.state.values[...] = values
+        self.stepper.hold()
         self.forces = forces
 
 
-def _same_vehicle(matrix: FloatArray, owner: IntArray) -> FloatArray:
-    """Clear the rounding between contacts of different vehicles, and make it symmetric."""
-    masked = np.where(owner[:, None] == owner[None, :], matrix, 0.0)
-    return np.asarray(0.5 * (masked + masked.T))
-
-
-def _block_inverse(matrix: FloatArray, owner: IntArray) -> FloatArray:
-    result = np.zeros_like(matrix)
+def _block_inverse(matrix: sp.csr_array, owner: IntArray) -> sp.csr_array:
+    """Inverse of a matrix with one symmetric block for each vehicle."""
+    blocks = []
     for vehicle in np.unique(owner):
         own = np.flatnonzero(owner == vehicle)
-        result[np.ix_(own, own)] = np.linalg.inv(matrix[np.ix_(own, own)])
-    return result
+        block = matrix[own[0] : own[-1] + 1, own[0] : own[-1] + 1].toarray()
+        inverse = np.linalg.inv(0.5 * (block + block.T))
+        blocks.append(0.5 * (inverse + inverse.T))
+    return sp.csr_array(sp.block_diag(blocks, format="csr"))
 
 
-def _pruned(matrix: FloatArray) -> FloatArray:
-    return np.where(np.abs(matrix) > 1e-300, matrix, 0.0)
+def _operand(matrix: sp.csr_array) -> FloatArray | sp.csr_array:
+    return matrix.toarray() if matrix.shape[0] * matrix.shape[1] <= _DENSE_UP_TO else matrix

@@ -2,13 +2,13 @@ r"""The small contact system: S X = gap, for all wheels whose vehicles touch the
 
 .. math:: S = (1+α) β Δt² \Big( I_X A_v^{-1} I_X^T + E A_s^{-1} E^T \Big)
 
-It is symmetric positive definite and changes from step to step only through E. The rows of a stretch of
-steps are computed together, before the time loop reaches them.
+It is symmetric positive definite and changes from step to step only through E. What a stretch of steps needs
+is computed together, before the time loop reaches it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,8 +23,8 @@ from axlespan.interaction.plan import Plan
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-# Steps of a stretch, and the entries of S that one may hold.
-_STRETCH, _ENTRIES = 256, 4_000_000
+# Entries of the compliance that are gathered at a time.
+_GATHER = 500_000
 
 
 class ContactSystemError(AxlespanError, ArithmeticError):
@@ -32,119 +32,187 @@ class ContactSystemError(AxlespanError, ArithmeticError):
 
 
 @dataclass(frozen=True, eq=False)
-class Stretch:
-    """Everything about contact that is known ahead, for consecutive steps."""
+class Rows:
+    """The contact rows of one crossing for consecutive steps; all of it is known ahead."""
 
-    first: int  # number of the first step (time index)
     positions: FloatArray  # (n_step, n_contact) [m]
-    on: npt.NDArray[np.bool_]  # (n_step, n_contact)
-    live: IntArray  # (n_live,) contacts on the structure at some step
+    live: IntArray  # (n_live,) contacts that are on the structure at some step
     dofs: IntArray  # (n_step, n_live, n_local) free d.o.f. of the structure
-    local: IntArray  # the same, as positions on the path
-    weights: FloatArray  # (n_step, n_live, n_local)
+    weights: FloatArray  # (n_step, n_live, n_local); zero off the structure
     gap: FloatArray  # (n_step, n_coupled) r + E_XP u_P [m]
-    live_coupled: IntArray  # (n_live_coupled,) which live contacts are coupled
-    live_forced: IntArray  # which are moving forces
-    into_coupled: IntArray  # (n_live_coupled,) their positions among the coupled contacts
-    active: IntArray  # (n_active,) coupled contacts of vehicles that touch the structure
-    systems: FloatArray  # (n_step, n_active, n_active) S
+    rank: IntArray  # (n_live,) place among the coupled contacts; -1 for moving forces
 
     @property
-    def n_step(self) -> int:
-        """Number of steps."""
-        return len(self.positions)
+    def active(self) -> IntArray:
+        """Which live contacts are coupled."""
+        return np.flatnonzero(self.rank >= 0)
 
 
-def stretches(
-    plan: Plan, structure: StructureBody, fleet: FleetBody | None, *, systems: bool = True
-) -> Iterator[Stretch]:
-    """The contact rows of a whole run, a stretch of steps at a time; with the contact systems, or without."""
-    first, n_contact = 1, plan.rows.n_contact
-    length = int(max(16, min(_STRETCH, _ENTRIES // max(n_contact**2, 1))))
-    while first <= plan.settings.steps:
-        last = min(first + length, plan.settings.steps + 1)
-        yield _stretch(plan, np.arange(first, last), structure, fleet if systems else None)
-        first = last
-
-
-def _stretch(plan: Plan, steps: IntArray, structure: StructureBody, fleet: FleetBody | None) -> Stretch:
-    """Rows and systems for consecutive time indices."""
+def rows_of(plan: Plan, steps: IntArray) -> Rows:
+    """The contact rows of a crossing at consecutive time indices."""
     times = plan.times_of(steps)
     positions = plan.rows.positions(times)
-    on = plan.rows.on_structure(positions)
-    live = np.flatnonzero(on.any(axis=0))
+    live = np.flatnonzero(plan.rows.on_structure(positions).any(axis=0))
     block = plan.rows.rows(positions[:, live], live)
-    number = np.full(plan.rows.n_contact, -1, dtype=np.int64)
-    number[plan.fleet.coupled] = np.arange(len(plan.fleet.coupled))
-    into = number[live]
-    live_coupled = np.flatnonzero(into >= 0)
-    owner = plan.fleet.vehicle_of
-    active = np.flatnonzero(np.isin(owner, np.unique(owner[into[live_coupled]])))
-    local = structure.local[block.dofs]
-    return Stretch(
-        first=int(steps[0]),
-        positions=positions,
-        on=on,
-        live=live,
-        dofs=block.dofs,
-        local=local,
-        weights=block.weights,
-        gap=_gap(plan, times, positions, block, live_coupled, into[live_coupled]),
-        live_coupled=live_coupled,
-        live_forced=np.flatnonzero(into < 0),
-        into_coupled=into[live_coupled],
-        active=active,
-        systems=_systems(structure, fleet, local, block.weights, live_coupled, into, active),
-    )
+    rank = np.full(plan.rows.n_contact, -1, dtype=np.int64)
+    rank[plan.fleet.coupled] = np.arange(len(plan.fleet.coupled))
+    gap = _gap(plan, times, positions, block, rank[live])
+    return Rows(positions, live, block.dofs, block.weights, gap, rank[live])
 
 
-def _gap(
-    plan: Plan,
-    times: FloatArray,
-    positions: FloatArray,
-    block: RowBlock,
-    live_coupled: IntArray,
-    into: IntArray,
-) -> FloatArray:
+def _gap(plan: Plan, times: FloatArray, positions: FloatArray, block: RowBlock, rank: IntArray) -> FloatArray:
     """R + E_XP u_P (n_step, n_coupled) [m]."""
     gap = plan.rows.irregularity(positions)[:, plan.fleet.coupled]
     if len(plan.moving):
         motions = plan.crossing.structure.system.motions
         u_p = np.column_stack([motions[j].value(times) for j in plan.moving])
         moved = u_p[np.arange(len(times))[:, None, None], block.prescribed_dofs] * block.prescribed_weights
-        gap[:, into] += moved.sum(axis=2)[:, live_coupled]
+        coupled = np.flatnonzero(rank >= 0)
+        gap[:, rank[coupled]] += moved.sum(axis=2)[:, coupled]
     return gap
 
 
-def _systems(
+@dataclass(frozen=True, eq=False)
+class System:
+    """The contact systems of one crossing for consecutive steps."""
+
+    contacts: IntArray  # (n,) coupled contacts of vehicles that touch the structure, in the joint fleet
+    matrices: FloatArray  # (n_step, n, n) S [m/N]
+
+
+@dataclass(frozen=True, eq=False)
+class Stretch:
+    """Consecutive steps of one or several crossings that advance side by side."""
+
+    first: int  # time index of the first step
+    n_step: int
+    crossings: Sequence[Rows]
+    flat: IntArray  # (n_step, n_coupled_live, n_local) places in the structure's state
+    held: IntArray  # the same, in loads on the held d.o.f.
+    weights: FloatArray  # (n_step, n_coupled_live, n_local)
+    into: IntArray  # (n_coupled_live,) places among the coupled contacts of the joint fleet
+    gap: FloatArray  # (n_step, n_coupled) of the joint fleet [m]
+    systems: Sequence[System]
+    forced: IntArray  # (n_forced_live,) contacts of the joint fleet that are moving forces
+    forced_held: IntArray  # (n_step, n_forced_live, n_local)
+    forced_weights: FloatArray  # (n_step, n_forced_live, n_local)
+
+    @property
+    def steps(self) -> IntArray:
+        """Time indices (n_step,)."""
+        return self.first + np.arange(self.n_step)
+
+
+def stretch_of(
+    plans: Sequence[Plan],
+    first: int,
+    n_step: int,
     structure: StructureBody,
     fleet: FleetBody | None,
-    local: IntArray,
-    weights: FloatArray,
-    live_coupled: IntArray,
-    into: IntArray,
-    active: IntArray,
-) -> FloatArray:
-    if fleet is None or not len(active):
-        return np.zeros((len(local), 0, 0))
-    own = fleet.compliance[np.ix_(active, active)]
-    result = np.broadcast_to(own, (len(local), *own.shape)).copy()
-    at = np.searchsorted(active, into[live_coupled])
-    result[:, at[:, None], at] += path_compliance(
-        structure.compliance, local[:, live_coupled], weights[:, live_coupled]
+    *,
+    systems: bool = True,
+) -> Stretch:
+    """Prepare consecutive steps of crossings that share a structure, in the order of its lanes.
+
+    The columns of A⁻¹ under the wheels are made available; ``systems=False`` leaves out the contact systems.
+    """
+    crossings = [rows_of(plan, first + np.arange(n_step)) for plan in plans]
+    columns = structure.columns
+    columns.hold(np.concatenate([rows.dofs[rows.weights != 0.0] for rows in crossings]))
+    contacts = _offsets([plan.rows.n_contact for plan in plans])
+    ranks = _offsets([len(plan.fleet.coupled) for plan in plans])
+    n_local = max(rows.dofs.shape[2] for rows in crossings)
+    coupled, forced = _Wheels(n_step, n_local), _Wheels(n_step, n_local)
+    parts = []
+    for lane, rows in enumerate(crossings):
+        is_coupled = rows.rank >= 0
+        coupled.append(rows, is_coupled, ranks[lane] + rows.rank[is_coupled], lane, structure)
+        forced.append(rows, ~is_coupled, contacts[lane] + rows.live[~is_coupled], lane, structure)
+        if systems and fleet is not None and len(rows.active):
+            parts.append(_system(rows, int(ranks[lane]), structure, fleet))
+    flat, held, weights, into = coupled.joined()
+    _, forced_held, forced_weights, forced_contacts = forced.joined()
+    gap = np.concatenate([rows.gap for rows in crossings], axis=1)
+    return Stretch(
+        first,
+        n_step,
+        crossings,
+        flat,
+        held,
+        weights,
+        into,
+        gap,
+        parts,
+        forced_contacts,
+        forced_held,
+        forced_weights,
     )
-    return result
+
+
+class _Wheels:
+    """Rows of wheels from several crossings, gathered into arrays of one width."""
+
+    def __init__(self, n_step: int, n_local: int) -> None:
+        self._n_local = n_local
+        self._flat = [np.empty((n_step, 0, n_local), dtype=np.int64)]
+        self._held = [np.empty((n_step, 0, n_local), dtype=np.int64)]
+        self._weights = [np.empty((n_step, 0, n_local))]
+        self._names = [np.empty(0, dtype=np.int64)]
+
+    def append(
+        self, rows: Rows, which: npt.NDArray[np.bool_], names: IntArray, lane: int, structure: StructureBody
+    ) -> None:
+        """Add some wheels of one crossing."""
+        missing = self._n_local - rows.dofs.shape[2]
+        dofs = np.pad(rows.dofs[:, which], ((0, 0), (0, 0), (0, missing)))
+        self._flat.append(dofs * structure.lanes + lane)
+        self._held.append(structure.columns.position[dofs] * structure.lanes + lane)
+        self._weights.append(np.pad(rows.weights[:, which], ((0, 0), (0, 0), (0, missing))))
+        self._names.append(names)
+
+    def joined(self) -> tuple[IntArray, IntArray, FloatArray, IntArray]:
+        """Places in the state, places in held loads, weights and names of all wheels."""
+        return (
+            np.concatenate(self._flat, axis=1),
+            np.concatenate(self._held, axis=1),
+            np.concatenate(self._weights, axis=1),
+            np.concatenate(self._names),
+        )
+
+
+def _offsets(sizes: Sequence[int]) -> IntArray:
+    return np.concatenate([[0], np.cumsum(sizes)])[:-1].astype(np.int64)
+
+
+def _system(rows: Rows, offset: int, structure: StructureBody, fleet: FleetBody) -> System:
+    """S of one crossing at all steps of the stretch."""
+    own = offset + rows.rank[rows.active]
+    owner = fleet.fleet.vehicle_of
+    contacts = np.flatnonzero(np.isin(owner, owner[own]))
+    vehicles = fleet.compliance[contacts][:, contacts].toarray()
+    matrices = np.repeat(0.5 * (vehicles + vehicles.T)[None], len(rows.positions), axis=0)
+    at = np.searchsorted(contacts, own)
+    local = structure.columns.position[rows.dofs[:, rows.active]]
+    matrices[:, at[:, None], at] += path_compliance(
+        structure.columns.compliance, local, rows.weights[:, rows.active]
+    )
+    return System(contacts, matrices)
 
 
 def path_compliance(compliance: FloatArray, local: IntArray, weights: FloatArray) -> FloatArray:
     """E Z Eᵀ (n_step, n_wheel, n_wheel) for rows on the path and its compliance Z (n_path, n_path)."""
     n_step, n_wheel, n_local = local.shape
-    flat, w = local.reshape(n_step, -1), weights.reshape(n_step, -1)
     result = np.empty((n_step, n_wheel, n_wheel))
-    for k in range(n_step):
-        block = compliance[flat[k][:, None], flat[k]]
-        half = (block * w[k]).reshape(n_wheel * n_local, n_wheel, n_local).sum(axis=2)
-        result[k] = (half * w[k][:, None]).reshape(n_wheel, n_local, n_wheel).sum(axis=1)
+    flat, w = local.reshape(n_step, -1), weights.reshape(n_step, -1)
+    block_steps = max(1, _GATHER // max((n_wheel * n_local) ** 2, 1))
+    for begin in range(0, n_step, block_steps):
+        some = slice(begin, begin + block_steps)
+        index = flat[some, :, None] * compliance.shape[1] + flat[some, None, :]
+        block = compliance.take(index)
+        block *= w[some, None, :]
+        half = block.reshape(-1, n_wheel * n_local, n_wheel, n_local).sum(axis=3)
+        half *= w[some, :, None]
+        result[some] = half.reshape(-1, n_wheel, n_local, n_wheel).sum(axis=2)
     return result
 
 

@@ -9,105 +9,68 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from axlespan.dynamics.integrator import State
 from axlespan.errors import AnalysisError
-from axlespan.interaction.bodies import FleetBody, StructureBody
-from axlespan.interaction.contact_system import Stretch, stretches
-from axlespan.interaction.march import bodies_of, forced_load, initial_path_load, weighted_forces
-from axlespan.interaction.plan import Plan
-from axlespan.interaction.recorder import Recorder
-from axlespan.interaction.start import Start
+from axlespan.interaction.contact_system import Stretch
+from axlespan.interaction.convoy import Convoy
+from axlespan.interaction.march import all_forces
 
 FloatArray = npt.NDArray[np.float64]
 
 
-def march_iterative(plan: Plan, start: Start, recorder: Recorder) -> tuple[StructureBody, FleetBody | None]:
-    """Compute all steps of a crossing by iteration between structure and vehicles.
+def couple_iteratively(convoy: Convoy, stretch: Stretch, k: int, external: FloatArray | None) -> FloatArray:
+    """One step by iteration between structure and vehicles.
 
     Raises
     ------
     AnalysisError
-        If a step does not converge, with the step, the residual and a remedy.
+        If the step does not converge, with the step, the residual and a remedy.
     """
-    structure, fleet = bodies_of(plan, start)
-    structure.path_load[:] = initial_path_load(plan, structure, start)
-    recorder.begin(structure, fleet, start.forces)
-    iterations = 0
-    for stretch in stretches(plan, structure, fleet, systems=False):
-        external = weighted_forces(plan, stretch)
-        with np.errstate(over="ignore", invalid="ignore"):
-            for k in range(stretch.n_step):
-                forces, count = _step(plan, structure, fleet, stretch, k, external[k])
-                iterations += count
-                recorder.step(stretch, k, structure, fleet, forces)
-        recorder.end_of(stretch)
-    recorder.counts["iterations"] = iterations
-    return structure, fleet
-
-
-def _step(
-    plan: Plan,
-    structure: StructureBody,
-    fleet: FleetBody | None,
-    stretch: Stretch,
-    k: int,
-    external: FloatArray,
-) -> tuple[FloatArray, int]:
-    all_forces = plan.fleet.weight.copy()
-    load = forced_load(plan, structure, stretch, k)
-    structure.predict(plan.forces.vectors @ external, load)
-    known = np.zeros_like(structure.path_load) if load is None else load
+    structure, fleet = convoy.structure, convoy.fleet
+    known = convoy.known_load(stretch, k)
+    structure.predict(None if external is None else convoy.forces.vectors @ external, known)
     if fleet is None:
-        structure.path_load = known
-        return all_forces, 0
+        structure.take(None, known)
+        return convoy.joint.weight
     fleet.predict()
-    on, into = stretch.live_coupled, stretch.into_coupled
-    dofs, local, weights = (rows[k][on] for rows in (stretch.dofs, stretch.local, stretch.weights))
     gap = stretch.gap[k] - fleet.at_wheels()
-    free = structure.state.copy()
-    forces, count = _iterate(
-        plan, structure, fleet, free, (dofs, local, weights), gap, into, stretch.first + k
-    )
-    coupled = structure.path_force(local, weights, forces[into])
-    structure.path_load = coupled + known
-    fleet.correct(forces)
-    all_forces[plan.fleet.coupled] = forces
-    return all_forces, count
+    if not len(stretch.into):
+        forces = np.asarray(fleet.stiffness @ gap)
+        structure.take(None, known)
+    else:
+        forces = _converged(convoy, stretch, k, gap)
+        load = structure.path_load(stretch.held[k], stretch.weights[k], forces[stretch.into])
+        structure.take_solved(load, known)
+    fleet.take(forces)
+    return all_forces(convoy, forces)
 
 
-def _iterate(
-    plan: Plan,
-    structure: StructureBody,
-    fleet: FleetBody,
-    free: State,
-    rows: tuple[npt.NDArray[np.int64], npt.NDArray[np.int64], FloatArray],
-    gap: FloatArray,
-    into: npt.NDArray[np.int64],
-    step: int,
-) -> tuple[FloatArray, int]:
-    """Contact forces (n_coupled,) of one step and the iterations they took; the structure is left with them."""
-    dofs, local, weights = rows
-    settings = plan.settings.iteration
+def _converged(convoy: Convoy, stretch: Stretch, k: int, gap: FloatArray) -> FloatArray:
+    """Contact forces (n_coupled,) of one step; the structure is left with their response."""
+    structure, fleet = convoy.structure, convoy.fleet
+    assert fleet is not None
+    settings, into = convoy.plans[0].settings.iteration, stretch.into
+    flat, held, weights = stretch.flat[k], stretch.held[k], stretch.weights[k]
     limit = settings.tolerance * float(np.abs(fleet.static).max())
+    free = structure.stepper.acceleration.copy()
     forces, residual = fleet.forces, np.inf
     for count in range(1, settings.limit + 1):
+        load = structure.path_load(held, weights, forces[into])
         force = np.zeros(structure.integrator.size)
-        force[structure.path_dofs] = -structure.integrator.weight_c * structure.path_force(
-            local, weights, forces[into]
-        )
-        structure.state = free.copy()
-        structure.integrator.correct(structure.state, structure.integrator.factor.solve(force, out=force))
+        force[structure.columns.held] = -structure.integrator.weight_c * load
+        structure.stepper.acceleration[...] = free + structure.integrator.factor.solve(force, out=force)
         reached = gap.copy()
-        reached[into] += structure.under(dofs, weights)
-        wanted = fleet.stiffness @ reached
+        reached[into] += structure.gather(flat, weights)
+        wanted = np.asarray(fleet.stiffness @ reached)
         residual = float(np.abs(wanted - forces).max())
-        if residual <= limit or not len(into):
-            return wanted, count
-        forces = forces + settings.relaxation * (wanted - forces)
+        if residual <= limit:
+            convoy.count("iterations", count)
+            return wanted
         if not np.isfinite(residual):
             break
+        forces = forces + settings.relaxation * (wanted - forces)
+    step = stretch.first + k
     raise AnalysisError(
-        f"step {step}, t = {step * plan.settings.time_step:.6g} s: the iteration between structure and vehicles did not converge "
-        f"in {settings.limit} iterations (last change {residual:.3g} N, tolerance {limit:.3g} N). Use the direct method, "
-        "a relaxation below 1, or a smaller time step"
+        f"step {step}, t = {step * convoy.plans[0].settings.time_step:.6g} s: the iteration between structure and "
+        f"vehicles did not converge in {settings.limit} iterations (last change {residual:.3g} N, tolerance "
+        f"{limit:.3g} N). Use the direct method, a relaxation below 1, or a smaller time step"
     )

@@ -1,124 +1,89 @@
 """The direct method as N12 prints it: the complete system (35), factored by blocks (appendix A), step by step.
 
 Dense and slow; the readable reference for the march that runs. Displacements of structure and vehicles stand in
-one vector u_F, vehicles behind the structure.
+one vector u_F, vehicles behind the structure. What it needs of the step before, (superscript p), it reads
+from the states that the other ways of coupling leave as well.
 """
 
 from __future__ import annotations
-
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
 
-from axlespan.dynamics.integrator import State
-from axlespan.interaction.bodies import FleetBody, StructureBody
-from axlespan.interaction.contact_system import Stretch, stretches
-from axlespan.interaction.march import bodies_of, initial_path_load
+from axlespan.interaction.contact_system import Stretch
+from axlespan.interaction.convoy import Convoy
 from axlespan.interaction.plan import Plan
-from axlespan.interaction.recorder import Recorder
-from axlespan.interaction.start import Start
 from axlespan.linalg.bordered import block_factorization
 
 FloatArray = npt.NDArray[np.float64]
 
 
-@dataclass(eq=False)
-class _Complete:
-    """Matrices of structure and vehicles together, with the state of the step before (superscript p)."""
-
-    K: FloatArray  # K_FF (n_F, n_F)
-    M: FloatArray
-    C: FloatArray
-    K_bar: FloatArray  # N12 (22)
-    state: State
-    G: FloatArray  # G_FX of the step before (n_F, n_contact)
-    X: FloatArray  # contact forces of the step before (n_contact,)
-    P: FloatArray  # external forces of the step before (n_F,)
-
-
-def march_literal(plan: Plan, start: Start, recorder: Recorder) -> tuple[StructureBody, FleetBody | None]:
-    """Compute all steps of a crossing by (15), (18), (20), (23) and (35)."""
-    structure, fleet = bodies_of(plan, start)
-    structure.path_load[:] = initial_path_load(plan, structure, start)
-    recorder.begin(structure, fleet, start.forces)
-    complete = _complete(plan, start)
-    n = plan.structure.size
-    for stretch in stretches(plan, structure, fleet, systems=False):
-        for k in range(stretch.n_step):
-            _step(plan, complete, stretch, k)
-            structure.state = State(*(q[:n] for q in (complete.state.u, complete.state.v, complete.state.a)))
-            structure.path_load = -(complete.G[:n] @ complete.X)[structure.path_dofs]
-            if fleet is not None:
-                fleet.state = State(*(q[n:] for q in (complete.state.u, complete.state.v, complete.state.a)))
-                fleet.forces = complete.X[plan.fleet.coupled]
-            recorder.step(stretch, k, structure, fleet, complete.X)
-        recorder.end_of(stretch)
-    return structure, fleet
-
-
-def _complete(plan: Plan, start: Start) -> _Complete:
-    s, v = plan.structure, plan.fleet.matrices
-    K, M = (_dense(a, b) for a, b in ((s.K, v.K), (s.M, v.M)))
-    C = np.zeros_like(K)
-    n = s.size
-    C[:n, :n] = s.damping_force(np.eye(n))
-    C[n:, n:] = v.damping_force(np.eye(v.size))
-    A0, A1, *_ = plan.settings.method.coefficients(plan.settings.time_step)
-    alpha = plan.settings.method.alpha
-    rows = plan.rows.positions(np.zeros(1))
-    state = State(
-        *(np.concatenate([getattr(start.structure, q), getattr(start.fleet, q)]) for q in ("u", "v", "a"))
-    )
+def couple_literally(convoy: Convoy, stretch: Stretch, k: int, external: FloatArray | None) -> FloatArray:
+    """One step of a single lane by (15), (18), (20), (23) and (35); ``external`` is computed anew here."""
+    plan, structure, fleet = convoy.plans[0], convoy.structure, convoy.fleet
+    settings, n, step = plan.settings, plan.structure.size, stretch.first + k
+    alpha = settings.method.alpha
+    A0, A1, A2, A3, A4, A5 = settings.method.coefficients(settings.time_step)
+    K, M, C = complete_matrices(plan)
+    u_p, v_p, a_p = structure.state.values.copy()
+    if fleet is not None:
+        u_p, v_p, a_p = np.concatenate([[u_p, v_p, a_p], fleet.state.values], axis=1)
+    X_p = convoy.joint.weight.copy()
+    X_p[convoy.joint.coupled] = convoy.joint.weight[:0] if fleet is None else fleet.forces
+    G_p, G = (contact_matrix(plan, i) for i in (step - 1, step))
+    P_p, _ = _external(plan, step - 1)
+    P, inertial = _external(plan, step)
     K_bar = A0 * M + (1 + alpha) * A1 * C + (1 + alpha) * K  # (22)
-    return _Complete(K, M, C, K_bar, state, _G(plan, rows), start.forces.copy(), _P(plan, 0.0)[0])
+    F = (1 + alpha) * P - alpha * P_p - alpha * G_p @ X_p + alpha * (C @ v_p + K @ u_p) + inertial  # (15)
+    F_bar = F + M @ (A0 * u_p + A2 * v_p + A3 * a_p)  # (23)
+    F_bar += (1 + alpha) * C @ (A1 * u_p + A4 * v_p + A5 * a_p)
+    forced, coupled = plan.fleet.forced, plan.fleet.coupled
+    X = plan.fleet.weight.copy()
+    F_bar += (1 + alpha) * G[:, forced] @ X[forced]  # moving forces are known
+    if len(coupled):
+        G_bar = -(1 + alpha) * G[:, coupled]  # (26); H̄ = Ḡᵀ
+        r_bar = -(1 + alpha) * stretch.gap[k]  # (37)
+        u, X[coupled] = block_factorization(K_bar, G_bar.T).solve(F_bar, r_bar)  # (35)
+    else:
+        u = np.asarray(np.linalg.solve(K_bar, F_bar), dtype=np.float64)
+    a = A0 * (u - u_p) - A2 * v_p - A3 * a_p  # (18)
+    v = A1 * (u - u_p) - A4 * v_p - A5 * a_p  # (20)
+    structure.put(np.array([u[:n], v[:n], a[:n]]), -(G[:n] @ X))
+    if fleet is not None:
+        fleet.put(np.array([u[n:], v[n:], a[n:]]), X[coupled])
+    return X
 
 
-def _dense(a: sp.csr_array, b: sp.csr_array) -> FloatArray:
-    return np.asarray(sp.block_diag([a, b]).toarray()) if b.shape[0] else np.asarray(a.toarray())
+def complete_matrices(plan: Plan) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """K_FF, M_FF and C_FF (n_F, n_F) of structure and vehicles together."""
+    s, v = plan.structure, plan.fleet.matrices
+    K, M = (
+        np.asarray(sp.block_diag([a, b]).toarray()) if v.size else np.asarray(a.toarray())
+        for a, b in ((s.K, v.K), (s.M, v.M))
+    )
+    C = np.zeros_like(K)
+    C[: s.size, : s.size] = s.damping_force(np.eye(s.size))
+    C[s.size :, s.size :] = v.damping_force(np.eye(v.size))
+    return K, M, C
 
 
-def _G(plan: Plan, positions: FloatArray) -> FloatArray:
-    """G_FX = [-D_IX; 1_XX] of N12 (11) at positions (1, n_contact)."""
+def contact_matrix(plan: Plan, step: int) -> FloatArray:
+    """G_FX = [-D_IX; 1_XX] (n_F, n_contact) of N12 (11) at a time index."""
     n, wheels = plan.structure.size, np.arange(plan.rows.n_contact)
-    block = plan.rows.rows(positions, wheels)
+    block = plan.rows.rows(plan.rows.positions(plan.times_of(np.array([step]))), wheels)
     G = np.zeros((n + plan.fleet.matrices.size, len(wheels)))
     np.add.at(G, (block.dofs[0], wheels[:, None]), -block.weights[0])
     G[n + plan.fleet.dofs, plan.fleet.coupled] = 1.0
     return G
 
 
-def _P(plan: Plan, time: float) -> tuple[FloatArray, FloatArray]:
-    """External forces with the prescribed motions' share of (15), and its inertial part at this time."""
-    factors = plan.forces.factors(np.array([time]))[0]
+def _external(plan: Plan, step: int) -> tuple[FloatArray, FloatArray]:
+    """External forces with the prescribed motions' share of (15), and its inertial part, at a time index."""
+    factors = plan.forces.factors(plan.times_of(np.array([step])))[0]
     n, n_v = plan.structure.size, plan.fleet.matrices.size
     P, inertial = np.zeros(n + n_v), np.zeros(n + n_v)
     P[:n] = plan.forces.vectors @ np.where(plan.forces.inertial, 0.0, factors)
     inertial[:n] = plan.forces.vectors @ np.where(plan.forces.inertial, factors, 0.0)
     P[n + plan.fleet.dofs] -= plan.fleet.weight[plan.fleet.coupled]  # gravity, about the static position
     return P, inertial
-
-
-def _step(plan: Plan, c: _Complete, stretch: Stretch, k: int) -> None:
-    settings = plan.settings
-    alpha, step = settings.method.alpha, stretch.first + k
-    A0, A1, A2, A3, A4, A5 = settings.method.coefficients(settings.time_step)
-    p = c.state
-    G = _G(plan, stretch.positions[k : k + 1])
-    P, inertial = _P(plan, step * settings.time_step)
-    F = (1 + alpha) * P - alpha * c.P - alpha * c.G @ c.X + alpha * (c.C @ p.v + c.K @ p.u) + inertial  # (15)
-    F_bar = F + c.M @ (A0 * p.u + A2 * p.v + A3 * p.a)  # (23)
-    F_bar += (1 + alpha) * c.C @ (A1 * p.u + A4 * p.v + A5 * p.a)
-    X = plan.fleet.weight.copy()
-    forced, coupled = plan.fleet.forced, plan.fleet.coupled
-    F_bar += (1 + alpha) * G[:, forced] @ X[forced]
-    G_bar = -(1 + alpha) * G[:, coupled]
-    r_bar = -(1 + alpha) * stretch.gap[k]  # (37); H = Gᵀ
-    if len(coupled):
-        u, X[coupled] = block_factorization(c.K_bar, G_bar.T).solve(F_bar, r_bar)
-    else:
-        u = np.asarray(np.linalg.solve(c.K_bar, F_bar), dtype=np.float64)
-    a = A0 * (u - p.u) - A2 * p.v - A3 * p.a  # (18)
-    v = A1 * (u - p.u) - A4 * p.v - A5 * p.a  # (20)
-    c.state, c.G, c.X, c.P = State(u, v, a), G, X, P

@@ -7,9 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from axlespan.dynamics.integrator import Integrator, State
-from axlespan.interaction.bodies import FleetBody, StructureBody
-from axlespan.interaction.contact_system import Stretch
+from axlespan.dynamics.integrator import Matrices, State
 from axlespan.interaction.plan import Plan
 from axlespan.running.path import PolynomialPath
 
@@ -21,20 +19,14 @@ _ENERGY_SAMPLES = 128
 
 
 class CompatibilityMonitor:
-    """Largest |u_X - E u - r| relative to the largest displacement of the wheels (N12 (27))."""
+    """Largest |u_X - E u - r| relative to the largest displacement of the wheels (N12 (27)), now and then."""
 
-    def __init__(self, plan: Plan) -> None:
-        self._plan = plan
+    def __init__(self) -> None:
         self._worst, self._scale = 0.0, 0.0
 
-    def look(self, stretch: Stretch, k: int, structure: StructureBody, fleet: FleetBody) -> None:
-        """Check one step."""
-        wheels = fleet.at_wheels()
-        line = stretch.gap[k].copy()
-        on = stretch.live_coupled
-        if len(on):
-            line[stretch.into_coupled] += structure.under(stretch.dofs[k][on], stretch.weights[k][on])
-        if np.all(np.isfinite(wheels)) and np.all(np.isfinite(line)):
+    def look(self, wheels: FloatArray, line: FloatArray) -> None:
+        """Compare wheels with the line under them (n_coupled,) [m]."""
+        if len(wheels) and np.all(np.isfinite(wheels)) and np.all(np.isfinite(line)):
             self._worst = max(self._worst, float(np.abs(wheels - line).max()))
             self._scale = max(self._scale, float(np.abs(wheels).max()))
 
@@ -52,7 +44,7 @@ class BalanceMonitor:
         system = plan.crossing.structure.system
         t = system.translation("z")
         self._t_prescribed = t[system.prescribed]
-        self._t = t
+        self._t_free = t[system.free]
         mass, damping, stiffness = (
             np.asarray(m @ t) for m in (system.mass, system.damping, system.stiffness)
         )
@@ -62,15 +54,10 @@ class BalanceMonitor:
         stiffness[np.abs(stiffness) < 1e-10 * scale] = 0.0
         rows = [(mass, "a")]
         rows += [(vector, name) for vector, name in ((damping, "v"), (stiffness, "u")) if np.any(vector)]
-        self._rows = [(vector[system.free], vector[system.prescribed], name) for vector, name in rows]
-        self.n_sum = len(self._rows)
+        self._rows = [(vector[system.prescribed], name) for vector, name in rows]
+        self.sums = [(np.ascontiguousarray(vector[system.free]), "uva".index(name)) for vector, name in rows]
         self._loads = [(float(t @ load.vector), load.factor) for load in system.loads]
         self._inertia, self._worst, self._scale = 0.0, 0.0, 0.0
-
-    def take(self, state: State, sums: FloatArray) -> None:
-        """Sums over the free d.o.f. at one step."""
-        for i, (vector, _, name) in enumerate(self._rows):
-            sums[i] = vector @ getattr(state, name)
 
     def look(
         self,
@@ -85,7 +72,7 @@ class BalanceMonitor:
         times = plan.times_of(steps)
         alpha = plan.settings.method.alpha
         totals = np.zeros(len(steps))
-        for i, (_, prescribed, name) in enumerate(self._rows):
+        for i, (prescribed, name) in enumerate(self._rows):
             history = {"a": "acceleration", "v": "velocity", "u": "value"}[name]
             moved = sum(
                 (prescribed[j] * getattr(system.motions[j], history)(times) for j in plan.moving),
@@ -108,13 +95,14 @@ class BalanceMonitor:
 
     def _share(self, positions: FloatArray) -> FloatArray:
         """Share (n_step, n_contact) of each wheel's force that the structure carries: 1, or less at its ends."""
-        system, result = self._plan.crossing.structure.system, np.zeros(positions.shape)
-        for path in self._plan.rows.paths:
-            dofs, weights = path.free.weights(positions[:, path.wheels])
-            result[:, path.wheels] = (self._t[system.free][dofs] * weights).sum(axis=2)
-        for wheels, prescribed in self._prescribed_paths:
-            dofs, weights = prescribed.weights(positions[:, wheels])
-            result[:, wheels] += (self._t_prescribed[dofs] * weights).sum(axis=2)
+        result = np.zeros(positions.shape)
+        free = [(path.wheels, path.free) for path in self._plan.rows.paths]
+        for groups, unit in ((free, self._t_free), (self._prescribed_paths, self._t_prescribed)):
+            for wheels, path in groups:
+                near = wheels[path.carries(positions[:, wheels]).any(axis=0)]
+                if len(near) and len(path.path_dofs):
+                    dofs, weights = path.weights(positions[:, near])
+                    result[:, near] += (unit[dofs] * weights).sum(axis=2)
         return result
 
     @property
@@ -212,59 +200,47 @@ class EnergyMonitor:
         self._samples = set(
             np.unique(np.linspace(1, steps, min(_ENERGY_SAMPLES, steps)).astype(int)).tolist()
         )
-        self._before: tuple[State, State | None, FloatArray, FloatArray | None] | None = None
+        self._before: tuple[State, State, FloatArray, FloatArray] | None = None
         self._worst, self._scale = 0.0, 0.0
 
-    def begin(self, structure: StructureBody, fleet: FleetBody | None) -> None:
-        """Remember time zero if the first step is sampled."""
-        if 1 in self._samples:
-            self._remember(structure, fleet)
+    def looks_at(self, step: int) -> bool:
+        """Whether a step matters: it is balanced, or the one after it is."""
+        return step in self._samples or step + 1 in self._samples
 
-    def _remember(self, structure: StructureBody, fleet: FleetBody | None) -> None:
-        self._before = (
-            structure.state.copy(),
-            None if fleet is None else fleet.state.copy(),
-            structure.path_load.copy(),
-            None if fleet is None else fleet.forces.copy(),
-        )
-
-    def step(
-        self, stretch: Stretch, k: int, structure: StructureBody, fleet: FleetBody | None, forces: FloatArray
+    def look(
+        self, step: int, structure: State, vehicles: State, load: FloatArray, forces: FloatArray
     ) -> None:
-        """Balance the step that has just been made, if it is sampled."""
-        step = stretch.first + k
+        """Look at a completed step: states, Eᵀ X (n,) and contact forces (n_coupled,)."""
         if step in self._samples and self._before is not None:
-            self._balance(step, structure, fleet)
+            self._balance(step, structure, vehicles, load, forces)
         self._before = None
         if step + 1 in self._samples:
-            self._remember(structure, fleet)
+            self._before = (structure.copy(), vehicles.copy(), load.copy(), forces.copy())
 
-    def _balance(self, step: int, structure: StructureBody, fleet: FleetBody | None) -> None:
+    def _balance(
+        self, step: int, structure: State, vehicles: State, load: FloatArray, forces: FloatArray
+    ) -> None:
         assert self._before is not None
-        before_s, before_v, load, wheel_forces = self._before
-        dt, n = self._plan.settings.time_step, self._plan.structure.size
-        factors = self._plan.forces.factors(np.array([step - 1, step]) * dt)
-        inertial = self._plan.forces.inertial
-        applied = [self._plan.forces.vectors @ np.where(inertial, 0.0, row) for row in factors]
-        extra = self._plan.forces.vectors @ np.where(inertial, factors[1], 0.0)
-        for vector, path_load in zip(applied, (load, structure.path_load), strict=True):
-            vector[structure.path_dofs] -= path_load
-        energy, imbalance = _step_balance(
-            structure.integrator, before_s, structure.state, applied[0], applied[1], extra
-        )
-        if fleet is not None and before_v is not None and wheel_forces is not None:
-            pair = []
-            for values in (wheel_forces, fleet.forces):
-                vector = np.zeros(len(before_v.u))
-                vector[fleet.fleet.dofs] = values - fleet.static
-                pair.append(vector)
-            own = _step_balance(
-                fleet.integrator, before_v, fleet.state, pair[0], pair[1], np.zeros(len(before_v.u))
-            )
+        plan = self._plan
+        structure_p, vehicles_p, load_p, forces_p = self._before
+        factors = plan.forces.factors(plan.times_of(np.array([step - 1, step])))
+        inertial = plan.forces.inertial
+        applied = [plan.forces.vectors @ np.where(inertial, 0.0, row) for row in factors]
+        extra = plan.forces.vectors @ np.where(inertial, factors[1], 0.0)
+        pair = (applied[0] - load_p, applied[1] - load)
+        energy, imbalance = _step_balance(plan, plan.structure, (structure_p, structure), pair, extra)
+        fleet = plan.fleet
+        if len(fleet.coupled):
+            on_wheels = []
+            for values in (forces_p, forces):
+                vector = np.zeros(fleet.matrices.size)
+                vector[fleet.dofs] = values - fleet.weight[fleet.coupled]
+                on_wheels.append(vector)
+            states, none = (vehicles_p, vehicles), np.zeros(fleet.matrices.size)
+            own = _step_balance(plan, fleet.matrices, states, (on_wheels[0], on_wheels[1]), none)
             energy, imbalance = energy + own[0], imbalance + own[1]
         if np.isfinite(energy) and np.isfinite(imbalance):
             self._worst, self._scale = max(self._worst, abs(imbalance)), max(self._scale, energy)
-        assert n == structure.integrator.size
 
     @property
     def residual(self) -> float:
@@ -273,19 +249,24 @@ class EnergyMonitor:
 
 
 def _step_balance(
-    body: Integrator, p: State, c: State, force_p: FloatArray, force_c: FloatArray, inertial: FloatArray
+    plan: Plan,
+    m: Matrices,
+    states: tuple[State, State],
+    forces: tuple[FloatArray, FloatArray],
+    inertial: FloatArray,
 ) -> tuple[float, float]:
     """Energy at the new time and the imbalance of one step [J]."""
-    m, method, dt = body.matrices, body.method, body.time_step
+    (p, c), (force_p, force_c) = states, forces
+    method, dt = plan.settings.method, plan.settings.time_step
     alpha, beta, gamma = method.alpha, method._beta, method._gamma
     du, da, mean_a = c.u - p.u, c.a - p.a, 0.5 * (c.a + p.a)
-
-    def internal(state: State) -> FloatArray:
-        return np.asarray(m.K @ state.u) + m.damping_force(state.v)
-
-    f_p, f_c = force_p - internal(p), force_c - internal(c)
-    kinetic_c, kinetic_p = (0.5 * float(s.v @ (m.M @ s.v)) for s in (c, p))
-    strain_c, strain_p = (0.5 * float(s.u @ (m.K @ s.u)) for s in (c, p))
+    Ku = [m.K @ state.u for state in states]
+    f_p, f_c = (
+        force - inner - m.damping_force(state.v)
+        for force, inner, state in zip(forces, Ku, states, strict=True)
+    )
+    kinetic_p, kinetic_c = (0.5 * float(state.v @ (m.M @ state.v)) for state in states)
+    strain_p, strain_c = (0.5 * float(state.u @ inner) for state, inner in zip(states, Ku, strict=True))
     work = float(du @ (0.5 * (force_p + force_c)))
     damped = float(du @ m.damping_force(0.5 * (p.v + c.v)))
     inertia_c = (1.0 + alpha) * f_c - alpha * f_p + inertial

@@ -38,6 +38,7 @@ class Fleet:
     coupled: IntArray  # (n_coupled,) contacts that have a d.o.f., among all contacts
     dofs: IntArray  # (n_coupled,) their d.o.f. in the fleet
     vehicle_of: IntArray  # (n_coupled,) vehicle of each coupled contact
+    owner_of_dof: IntArray  # (n,) vehicle of each d.o.f.
     dof_names: tuple[str, ...]
 
     @property
@@ -122,6 +123,7 @@ def fleet_of(train: Train, gravity: float) -> Fleet:
     coupled: list[int] = []
     dofs: list[int] = []
     owner: list[int] = []
+    dof_owner: list[int] = []
     begin, contact = 0, 0
     for i, item in enumerate(train.placements):
         vehicle = item.vehicle
@@ -133,6 +135,7 @@ def fleet_of(train: Train, gravity: float) -> Fleet:
             coupled += range(contact, contact + len(vehicle.contacts))
             dofs += (begin + vehicle.contact_dofs).tolist()
             owner += [i] * len(vehicle.contacts)
+            dof_owner += [i] * own.size
             begin += own.size
         contact += len(vehicle.contacts)
     index = np.int64
@@ -142,7 +145,31 @@ def fleet_of(train: Train, gravity: float) -> Fleet:
         np.array(coupled, dtype=index),
         np.array(dofs, dtype=index),
         np.array(owner, dtype=index),
+        np.array(dof_owner, dtype=index),
         tuple(names),
+    )
+
+
+def joined(fleets: Sequence[Fleet]) -> Fleet:
+    """Several trains as one fleet; contacts, d.o.f. and vehicles are numbered on."""
+    if len(fleets) == 1:
+        return fleets[0]
+    contacts, dofs, vehicles = (
+        np.concatenate([[0], np.cumsum(sizes)])[:-1]
+        for sizes in (
+            [len(fleet.weight) for fleet in fleets],
+            [fleet.matrices.size for fleet in fleets],
+            [int(fleet.owner_of_dof.max(initial=-1)) + 1 for fleet in fleets],
+        )
+    )
+    return Fleet(
+        _block_diagonal([fleet.matrices for fleet in fleets if fleet.matrices.size]),
+        np.concatenate([fleet.weight for fleet in fleets]),
+        np.concatenate([fleet.coupled + at for fleet, at in zip(fleets, contacts, strict=True)]),
+        np.concatenate([fleet.dofs + at for fleet, at in zip(fleets, dofs, strict=True)]),
+        np.concatenate([fleet.vehicle_of + at for fleet, at in zip(fleets, vehicles, strict=True)]),
+        np.concatenate([fleet.owner_of_dof + at for fleet, at in zip(fleets, vehicles, strict=True)]),
+        tuple(name for fleet in fleets for name in fleet.dof_names),
     )
 
 

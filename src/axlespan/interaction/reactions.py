@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-import scipy.sparse as sp
 
 from axlespan.interaction.plan import Plan
 from axlespan.running.path import PolynomialPath
@@ -95,13 +94,12 @@ class Reactions:
 
     def _carried(self, positions: FloatArray, forces: FloatArray) -> FloatArray:
         """D_PX X: wheel loads that go straight into the supports."""
-        n_step, n = len(positions), self._inertia.size
-        total = sp.csr_array((n_step, n))
+        total = np.zeros((len(positions), self._inertia.size))
         for wheels, path in self.paths:
-            dofs, weights = path.weights(positions[:, wheels])
-            values = weights * forces[:, wheels, None]
-            row = np.broadcast_to(np.arange(n_step)[:, None, None], dofs.shape)
-            total = total + sp.csr_array(
-                sp.coo_array((values.ravel(), (row.ravel(), dofs.ravel())), shape=(n_step, n))
-            )
-        return np.asarray(total.toarray())
+            near = wheels[path.carries(positions[:, wheels]).any(axis=0)]
+            if not len(near) or not len(path.path_dofs):
+                continue
+            dofs, weights = path.weights(positions[:, near])
+            for support in path.path_dofs.tolist():
+                total[:, support] += ((dofs == support) * weights * forces[:, near, None]).sum(axis=(1, 2))
+        return total

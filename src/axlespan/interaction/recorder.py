@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from contextlib import suppress
 from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from axlespan.dynamics.integrator import State
 from axlespan.errors import AnalysisError, Outcome
-from axlespan.interaction.bodies import FleetBody, StructureBody
-from axlespan.interaction.contact_system import Stretch
 from axlespan.interaction.monitors import BalanceMonitor, CompatibilityMonitor, EnergyMonitor, TensionMonitor
 from axlespan.interaction.plan import Plan
 from axlespan.interaction.reactions import Reactions
 from axlespan.interaction.result import Result
+from axlespan.interaction.settings import DAMPED_ALPHA
+from axlespan.interaction.tape import LaneTape
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -50,7 +50,7 @@ class Recorder:
         n_contact, n_vehicle = plan.rows.n_contact, plan.fleet.matrices.size
         self._sensor_dofs, self._sensor_weights = self._sensors()
         self.reactions = Reactions(plan)
-        self.compatibility, self.energy = CompatibilityMonitor(plan), EnergyMonitor(plan)
+        self.compatibility, self.energy = CompatibilityMonitor(), EnergyMonitor(plan)
         self.balance, self.tension = BalanceMonitor(plan, self.reactions.paths), TensionMonitor(plan)
         n_sensor = len(self._sensor_dofs)
         self.histories = Histories(
@@ -60,13 +60,11 @@ class Recorder:
             {name: np.zeros((n_kept, n_sensor)) for name in _QUANTITIES},
             np.zeros((n_kept, len(plan.crossing.structure.system.prescribed))),
         )
-        self._selected, self._inverse = np.unique(
+        self.selected, self._inverse = np.unique(
             np.concatenate([self._sensor_dofs.ravel(), self.reactions.free_dofs]), return_inverse=True
         )
         self.completed = 0  # time index of the last good step
         self.finite = True
-        self._pending: tuple[Stretch, int] | None = None  # a stretch that is not worked up yet
-        self._buffer_steps = 0
 
     def _sensors(self) -> tuple[IntArray, FloatArray]:
         positions = np.array(list(self.plan.settings.sensors.values()), float)
@@ -74,124 +72,78 @@ class Recorder:
             return np.zeros((0, 1), dtype=np.int64), np.zeros((0, 1))
         return self.plan.sensor_path.weights(positions)
 
-    # --- in the loop ---------------------------------------------------------------------------
+    # --- during the run ----------------------------------------------------------------------
 
-    def begin(self, structure: StructureBody, fleet: FleetBody | None, forces: FloatArray) -> None:
-        """Keep time zero."""
-        self._allocate(1)
-        self._take(0, structure, fleet, forces)
-        self.energy.begin(structure, fleet)
-        zero, positions = np.zeros(1, dtype=np.int64), self.plan.rows.positions(np.zeros(1))
-        self._keep(zero, positions)
-        self.tension.look(zero, positions, self._forces)
+    def begin(self, structure: State, vehicles: State, forces: FloatArray, load: FloatArray) -> None:
+        """Keep time zero: states, contact forces (n_contact,) and Eᵀ X (n,)."""
+        near = structure.values[:, None, self.selected]
+        sums = np.array([[vector @ structure.values[which] for vector, which in self.balance.sums]])
+        tape = LaneTape(near, vehicles.values[:, None], forces[None], sums)
+        zero = np.zeros(1, dtype=np.int64)
+        self._take(zero, self.plan.rows.positions(np.zeros(1)), tape)
+        if self.energy.looks_at(0):
+            self.energy.look(0, structure, vehicles, load, forces[self.plan.fleet.coupled])
 
-    def step(
-        self, stretch: Stretch, k: int, structure: StructureBody, fleet: FleetBody | None, forces: FloatArray
-    ) -> None:
-        """Keep one step of a stretch."""
-        if k == 0:
-            self._allocate(stretch.n_step)
-        self._take(k, structure, fleet, forces)
-        self._pending = (stretch, k + 1)
-        self.energy.step(stretch, k, structure, fleet, forces)
-        if fleet is not None and k == stretch.n_step - 1:
-            self.compatibility.look(stretch, k, structure, fleet)
-
-    def end_of(self, stretch: Stretch) -> None:
-        """Work up a stretch: reactions, peaks, checks.
-
-        Raises
-        ------
-        AnalysisError
-            If a value is not finite or the contact forces have run away.
-        """
-        self._work_up(stretch, stretch.n_step)
+    def work_up(self, steps: IntArray, positions: FloatArray, tape: LaneTape) -> None:
+        """Work up the tape of consecutive good steps: histories, reactions, peaks, checks."""
+        self._take(steps, positions, tape)
         if self._progress is not None:
             self._progress(self.completed)
 
-    def salvage(self) -> None:
-        """Keep the good steps of a stretch that was broken off."""
-        if self._pending is not None:
-            stretch, n_step = self._pending
-            with suppress(AnalysisError):
-                self._work_up(stretch, n_step)
+    def broken_off(
+        self, steps: IntArray, positions: FloatArray, tape: LaneTape, n_good: int, message: str | None
+    ) -> AnalysisError:
+        """Keep the good steps of a stretch that failed; the error that says what happened.
 
-    def _work_up(self, stretch: Stretch, n_step: int) -> None:
-        self._pending = None
-        steps = stretch.first + np.arange(n_step)
-        bad = self._first_bad(n_step)
-        n_good = n_step if bad is None else bad
+        Without a message the step after the good ones holds a value that is not finite or out of bounds.
+        """
         if n_good:
-            self._keep(steps[:n_good], stretch.positions[:n_good])
-            self.tension.look(steps[:n_good], stretch.positions[:n_good], self._forces[:n_good])
-        if bad is not None:
-            self.finite = False
-            self._raise_for(int(steps[bad]), bad)
+            self._take(steps[:n_good], positions[:n_good], tape.upto(n_good))
+        if message is not None:
+            return AnalysisError(message)
+        self.finite = False
+        return self._divergence(int(steps[n_good]), tape.forces[n_good], tape.vehicles[0, n_good])
 
-    def _allocate(self, n_step: int) -> None:
-        if n_step != self._buffer_steps:
-            n_selected, n_vehicle = len(self._selected), self.plan.fleet.matrices.size
-            self._structure_rows = np.zeros((3, n_step, n_selected))
-            self._vehicle_rows = np.zeros((3, n_step, n_vehicle))
-            self._forces = np.zeros((n_step, self.plan.rows.n_contact))
-            self._sums = np.zeros((n_step, self.balance.n_sum))
-            self._buffer_steps = n_step
+    def first_bad(self, tape: LaneTape) -> int | None:
+        """The first step with a value that is not finite or a contact force that has run away."""
+        limit = _DIVERGED * max(float(np.abs(self.plan.fleet.weight).max()), 1.0)
+        good = np.isfinite(tape.vehicles).all(axis=(0, 2)) & np.isfinite(tape.near).all(axis=(0, 2))
+        with np.errstate(invalid="ignore"):
+            good &= (np.abs(tape.forces) < limit).all(axis=1)
+        good &= np.isfinite(tape.sums).all(axis=1)
+        return None if good.all() else int(np.argmin(good))
 
-    def _take(self, k: int, structure: StructureBody, fleet: FleetBody | None, forces: FloatArray) -> None:
-        state = structure.state
-        if len(self._selected):
-            for row, values in zip(self._structure_rows, (state.u, state.v, state.a), strict=True):
-                values.take(self._selected, out=row[k])
-        if fleet is not None:
-            own = fleet.state
-            rows = self._vehicle_rows
-            rows[0, k], rows[1, k], rows[2, k] = own.u, own.v, own.a
-        self._forces[k] = forces
-        self.balance.take(state, self._sums[k])
+    def _divergence(self, step: int, forces: FloatArray, motion: FloatArray) -> AnalysisError:
+        time = step * self.plan.settings.time_step
+        force = np.abs(np.nan_to_num(forces, nan=np.inf))
+        where = f"contact {self.plan.crossing.train.contact_names[int(np.argmax(force))]}"
+        if len(motion):
+            largest = int(np.argmax(np.abs(np.nan_to_num(motion, nan=np.inf))))
+            where += f", d.o.f. {self.plan.fleet.dof_names[largest]}"
+        return AnalysisError(
+            f"the run diverged at step {step}, t = {time:.6g} s ({where}): a value is not finite or a contact force "
+            f"exceeds {_DIVERGED:g} times the static one. Use alpha = {DAMPED_ALPHA}, a smaller time step, or check "
+            "masses and stiffnesses"
+        )
 
     # --- after a stretch -----------------------------------------------------------------------
 
-    def _first_bad(self, n_step: int) -> int | None:
-        limit = _DIVERGED * max(float(np.abs(self.plan.fleet.weight).max()), 1.0)
-        good = np.isfinite(self._vehicle_rows[:, :n_step]).all(axis=(0, 2))
-        good &= np.isfinite(self._structure_rows[:, :n_step]).all(axis=(0, 2))
-        with np.errstate(invalid="ignore"):
-            good &= (np.abs(self._forces[:n_step]) < limit).all(axis=1)
-        good &= np.isfinite(self._sums[:n_step]).all(axis=1)
-        return None if good.all() else int(np.argmin(good))
-
-    def _raise_for(self, step: int, k: int) -> None:
-        time = step * self.plan.settings.time_step
-        with np.errstate(invalid="ignore", over="ignore"):
-            force = np.abs(np.nan_to_num(self._forces[k], nan=np.inf))
-            motion = np.abs(np.nan_to_num(self._vehicle_rows[0, k], nan=np.inf))
-        contact = self.plan.crossing.train.contact_names[int(np.argmax(force))]
-        where = f"contact {contact}"
-        if len(motion):
-            where += f", d.o.f. {self.plan.fleet.dof_names[int(np.argmax(motion))]}"
-        raise AnalysisError(
-            f"the run diverged at step {step}, t = {time:.6g} s ({where}): a value is not finite or a contact force exceeds "
-            f"{_DIVERGED:g} times the static one. Use alpha = -0.1, a smaller time step, or check masses and stiffnesses"
-        )
-
-    def _keep(self, steps: IntArray, positions: FloatArray) -> None:
-        """Move the kept steps of the buffers into the histories."""
-        n = len(steps)
-        if not n:
-            return
-        values = self._structure_rows[:, :n, self._inverse]
+    def _take(self, steps: IntArray, positions: FloatArray, tape: LaneTape) -> None:
+        """Move what is asked for into the histories."""
+        values = tape.near[:, :, self._inverse]
         n_sensor = self._sensor_dofs.size
-        at_sensors = values[:, :, :n_sensor].reshape(3, n, *self._sensor_dofs.shape)
+        at_sensors = values[:, :, :n_sensor].reshape(3, len(steps), *self._sensor_dofs.shape)
         sensors = (at_sensors * self._sensor_weights).sum(axis=3) + self._moved_sensors(steps)
-        reactions = self.reactions.of(steps, values[:, :, n_sensor:], positions, self._forces[:n])
-        self.balance.look(steps, self._sums[:n], reactions, positions, self._forces[:n])
+        reactions = self.reactions.of(steps, values[:, :, n_sensor:], positions, tape.forces)
+        self.balance.look(steps, tape.sums, reactions, positions, tape.forces)
+        self.tension.look(steps, positions, tape.forces)
         kept = np.flatnonzero(steps % self.every == 0)
         into = steps[kept] // self.every
         h = self.histories
-        h.contact_force[into], h.contact_position[into] = self._forces[kept], positions[kept]
+        h.contact_force[into], h.contact_position[into] = tape.forces[kept], positions[kept]
         h.support_reaction[into] = reactions[kept]
         for i, name in enumerate(_QUANTITIES):
-            h.vehicle[name][into] = self._vehicle_rows[i, kept]
+            h.vehicle[name][into] = tape.vehicles[i, kept]
             h.sensor[name][into] = sensors[i, kept]
         self.completed = int(steps[-1])
 

@@ -3,29 +3,31 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from axlespan.dynamics.alpha import Alpha
-from axlespan.errors import AnalysisError, Outcome
-from axlespan.interaction.bodies import FleetBody, StructureBody
+from axlespan.errors import AnalysisError, InputError, Outcome
+from axlespan.interaction.bodies import PreparedStructure
+from axlespan.interaction.convoy import Couple, Lane, drive
 from axlespan.interaction.crossing import Crossing
-from axlespan.interaction.iterative import march_iterative
-from axlespan.interaction.literal import march_literal
-from axlespan.interaction.march import march_direct
+from axlespan.interaction.iterative import couple_iteratively
+from axlespan.interaction.literal import couple_literally
+from axlespan.interaction.march import couple_directly
 from axlespan.interaction.plan import Plan, plan_for
 from axlespan.interaction.recorder import Recorder
-from axlespan.interaction.refactored import march_refactored
+from axlespan.interaction.refactored import couple_by_refactoring
 from axlespan.interaction.result import Result
-from axlespan.interaction.settings import Iteration, settings_for
-from axlespan.interaction.start import Start, start_of
+from axlespan.interaction.settings import Iteration, Settings, settings_for
+from axlespan.interaction.start import start_of
 
-_Bodies = tuple[StructureBody, FleetBody | None]
-_MARCHES: dict[str, Callable[[Plan, Start, Recorder], _Bodies]] = {
-    "direct": march_direct,
-    "iterative": march_iterative,
-    "refactored": march_refactored,
-    "literal": march_literal,
+_COUPLES: dict[str, tuple[Couple, bool]] = {
+    "direct": (couple_directly, True),
+    "iterative": (couple_iteratively, False),
+    "refactored": (couple_by_refactoring, False),
+    "literal": (couple_literally, False),
 }
 
 
@@ -98,25 +100,113 @@ def simulate(
     return run_plan(plan_for(crossing, settings), progress)
 
 
+def simulate_many(
+    crossings: Sequence[Crossing],
+    *,
+    time_step: float,
+    steps: int | Sequence[int],
+    method: Alpha | None = None,
+    sensors: Mapping[str, float] | None = None,
+    footprint: float | None = None,
+    solver: str = "auto",
+    every: int = 1,
+) -> list[Result]:
+    """Simulate several crossings of one structure side by side, from one factorization.
+
+    Parameters
+    ----------
+    crossings : sequence of Crossing
+        All with the same ``structure``; trains, speeds, starts and irregularities may differ.
+    steps : int or sequence of int
+        Number of time steps, one for all or one each.
+    time_step, method, sensors, footprint, solver, every
+        As for :func:`simulate`. The defaults of method and footprint follow from all trains together.
+
+    Returns
+    -------
+    list of Result
+        In the order of the crossings. A crossing that fails has ``outcome.code == "failed"`` and what was
+        computed; the others go on.
+
+    Raises
+    ------
+    InputError
+        If the crossings don't share a structure, or an input breaks a rule.
+    """
+    if not crossings:
+        return []
+    if any(crossing.structure is not crossings[0].structure for crossing in crossings):
+        raise InputError(
+            "must all be of one structure object",
+            field="crossings",
+            fix="Build the structure once, and share it",
+        )
+    counts = [steps] * len(crossings) if isinstance(steps, int) else list(steps)
+    if len(counts) != len(crossings):
+        raise InputError("must be one number, or one for each crossing", field="steps", value=len(counts))
+
+    def settings(crossing: Crossing, n: int, chosen: Alpha | None) -> Settings:
+        return settings_for(
+            crossing,
+            time_step=time_step,
+            steps=n,
+            method=chosen,
+            sensors=sensors,
+            footprint=footprint,
+            solver=solver,
+            every=every,
+        )
+
+    pairs = list(zip(crossings, counts, strict=True))
+    shared = method or _shared_method([settings(crossing, n, None) for crossing, n in pairs])
+    plans = [plan_for(crossing, settings(crossing, n, shared)) for crossing, n in pairs]
+    return run_plans(plans)
+
+
+def _shared_method(settings: Sequence[Settings]) -> Alpha:
+    """The method with the most numerical damping that any of the trains asks for."""
+    return min((one.method for one in settings), key=lambda chosen: chosen.alpha)
+
+
 def run_plan(plan: Plan, progress: Callable[[int], None] | None = None) -> Result:
     """Compute a compiled crossing; see :func:`simulate`."""
+    (result,) = run_plans([plan], progress)
+    if result.outcome.code == "failed":
+        raise AnalysisError(result.outcome.message, result)
+    return result
+
+
+def run_plans(plans: Sequence[Plan], progress: Callable[[int], None] | None = None) -> list[Result]:
+    """Compute compiled crossings of one structure side by side; failed ones are among the results."""
     begun = time.perf_counter()
-    start = start_of(plan)
-    recorder = Recorder(plan, progress)
-    try:
-        structure, fleet = _MARCHES[plan.settings.coupling](plan, start, recorder)
-    except AnalysisError as error:
-        recorder.salvage()
-        outcome = Outcome("failed", str(error))
-        facts = {"wall_time": time.perf_counter() - begun}
-        raise AnalysisError(str(error), recorder.result(outcome, facts)) from error
-    facts = _facts(plan, structure, fleet) | {"wall_time": time.perf_counter() - begun}
-    outcome = Outcome("completed", f"{plan.settings.steps} steps computed")
-    return recorder.result(outcome, facts)
+    settings = plans[0].settings
+    prepared = prepare(plans)
+    lanes = [Lane.at_start(plan, start_of(plan), Recorder(plan, progress)) for plan in plans]
+    couple, systems = _COUPLES[settings.coupling]
+    drive(lanes, prepared, couple, systems=systems)
+    seconds = time.perf_counter() - begun
+    return [_result(lane, prepared, seconds, len(lanes)) for lane in lanes]
 
 
-def _facts(plan: Plan, structure: StructureBody, fleet: FleetBody | None) -> dict[str, Any]:
-    factor = structure.integrator.factor
+def prepare(plans: Sequence[Plan]) -> PreparedStructure:
+    """Factor the structure that the plans share."""
+    settings = plans[0].settings
+    used = [path.free.path_dofs for plan in plans for path in plan.rows.paths]
+    path_dofs = np.unique(np.concatenate(used))
+    return PreparedStructure(
+        plans[0].structure, settings.method, settings.time_step, path_dofs, solver=settings.solver
+    )
+
+
+def _result(lane: Lane, prepared: PreparedStructure, seconds: float, lanes: int) -> Result:
+    facts = _facts(lane.plan, prepared) | {"wall_time": seconds, "side_by_side": lanes}
+    if lane.error is not None:
+        return lane.recorder.result(Outcome("failed", str(lane.error)), facts)
+    return lane.recorder.result(Outcome("completed", f"{lane.plan.settings.steps} steps computed"), facts)
+
+
+def _facts(plan: Plan, prepared: PreparedStructure) -> dict[str, Any]:
+    factor = prepared.integrator.factor
     return {
         "structure_dofs": plan.structure.size,
         "vehicle_dofs": plan.fleet.matrices.size,
@@ -130,5 +220,5 @@ def _facts(plan: Plan, structure: StructureBody, fleet: FleetBody | None) -> dic
         "coupling": plan.settings.coupling,
         "solver": factor.name,
         "factor_bytes": int(factor.nbytes),
-        "path_dofs": len(structure.path_dofs),
+        "path_dofs": len(prepared.columns.path_dofs),
     }

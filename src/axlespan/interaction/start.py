@@ -39,6 +39,7 @@ class Start:
     structure: State
     fleet: State
     forces: FloatArray  # (n_contact,) [N]
+    load: FloatArray  # Eᵀ X (n,) on the structure [N]
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,13 +61,13 @@ def start_of(plan: Plan) -> Start:
     external = plan.forces.at(0.0) if plan.forces.n_term else np.zeros(n)
     u_s, forces = _static(plan, plan.forces.static(0.0), rows)
     u_v, forces = _vehicles_at(fleet, forces, rows, u_s)
-    structure = State(u_s, np.zeros(n), np.zeros(n))
-    vehicles = State(u_v, np.zeros(fleet.matrices.size), np.zeros(fleet.matrices.size))
+    structure, vehicles = State.at_rest((n,)), State.at_rest((fleet.matrices.size,))
+    structure.u[:], vehicles.u[:] = u_s, u_v
     x = fleet.coupled
     speed = float(plan.crossing.motion.speed(np.zeros(1))[0])
     vehicles.v[fleet.dofs] = (rows.rate + speed * (rows.E1 @ u_s))[x]
     forces = _accelerate(plan, structure, vehicles, external, rows, forces.reshape(n_contact), speed)
-    return Start(structure, vehicles, forces)
+    return Start(structure, vehicles, forces, np.asarray(rows.E.T @ forces))
 
 
 def _rows_at_zero(plan: Plan) -> _Rows:
@@ -217,7 +218,7 @@ def _accelerate(
     system = responses[fleet.dofs] + rows.E[x] @ columns
     change = np.linalg.solve(system, wanted - free[fleet.dofs])  # of the contact forces, from the static ones
     vehicles.a[:] = free + responses @ change
-    structure.a -= columns @ change
+    structure.a[:] -= columns @ change
     forces = static.copy()
     forces[x] += change
     return forces

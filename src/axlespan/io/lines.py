@@ -78,7 +78,7 @@ class Lines:
         kept = [i for i, line in enumerate(lines) if line and not line.isspace()]
         self.lines = list(lines) if len(kept) == len(lines) else [lines[i] for i in kept]
         self.numbers: IntArray = np.asarray(kept, dtype=np.int64) + first
-        self._end = first + len(lines)
+        self._first = first
         self.position = 0
 
     @classmethod
@@ -94,9 +94,9 @@ class Lines:
     def place(self, position: int | None = None) -> Place:
         """Place of a line by its position; of the line read last when left out."""
         where = self.position - 1 if position is None else position
-        if where >= len(self.lines):
-            return Place(self.file, max(1, self._end - 1))
-        return Place(self.file, int(self.numbers[max(0, where)]) if self.lines else None)
+        if not self.lines:
+            return Place(self.file, self._first)
+        return Place(self.file, int(self.numbers[min(max(0, where), len(self.lines) - 1)]))
 
     def error(self, rule: str, *, fix: str | None = None, position: int | None = None) -> InputError:
         """An error at a line (the one read last when left out) that shows it."""

@@ -83,7 +83,7 @@ def write_result(
 
     Raises
     ------
-    InputError
+    OSError
         If the file cannot be written.
     """
     place = Path(path)
@@ -95,10 +95,8 @@ def write_result(
             _write_coordinates(file, result)
             _write_histories(file, result)
         os.replace(part, place)
-    except OSError as error:
-        reason = _reason(error)
-        fix = "Check that the folder exists, may be written to and has space"
-        raise InputError(f"cannot be written: {reason}", field="file", value=str(path), fix=fix) from error
+    except RuntimeError as error:  # HDF5 on a full disk
+        raise OSError(f"{place}: cannot be written: {_reason(error)}") from error
     finally:
         part.unlink(missing_ok=True)
     return place
@@ -171,9 +169,9 @@ def read_result(path: str | PathLike[str]) -> Result:
     """
     with _opened(path) as file:
         header = _header(file)
-        coordinates = {name: _names(file, name) for name in _COORDINATES if name != "time"}
+        coordinates: dict[str, Any] = {name: _names(file, name) for name in _COORDINATES if name != "time"}
         time = np.asarray(file["time"][...], dtype=np.float64)
-        histories = {
+        histories: dict[str, Any] = {
             name: _history(file, name, (len(time), len(coordinates[dimension])))
             for name, (dimension, _, _) in VARIABLES.items()
         }

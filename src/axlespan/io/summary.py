@@ -6,7 +6,7 @@ Names are stable and carry their units. Values that a run does not have are null
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -19,7 +19,10 @@ from axlespan.interaction.result import Result
 from axlespan.io.dof_units import is_rotation, unit_of
 from axlespan.io.peaks import Peak, force_ratios, highest, lowest
 from axlespan.io.strict_json import json_ready, to_json
+from axlespan.io.summary_text import print_summary, summary_lines
 from axlespan.io.verdicts import verdicts
+
+__all__ = ["FORMAT_VERSION", "print_summary", "summary", "summary_lines", "write_summary"]
 
 #: Version of the layout of summary.json.
 FORMAT_VERSION = 1
@@ -40,56 +43,31 @@ _COMPUTATION = {
 }
 
 
-@dataclass(frozen=True)
-class Description:
-    """What was run, for its readers."""
-
-    title: str = ""
-    structure: str = ""
-    structure_length_m: float | None = None
-    train: str = ""
-    vehicles: int | None = None
-    speed_m_per_s: float | None = None  # at the start
-    speed_end_m_per_s: float | None = None  # of a speed history
-
-
-def describe(crossing: Crossing, title: str = "") -> Description:
-    """The description of a crossing."""
-    speeds = crossing.motion.speeds
-    return Description(
-        title=title,
-        structure=crossing.structure.name,
-        structure_length_m=float(crossing.structure.length),
-        train=crossing.train.name,
-        vehicles=len(crossing.train.placements),
-        speed_m_per_s=float(speeds[0]),
-        speed_end_m_per_s=float(speeds[-1]),
-    )
-
-
 def summary(
     result: Result,
-    description: Description | None = None,
+    crossing: Crossing | None = None,
     *,
-    files: Sequence[str | PathLike[str]] = (),
+    title: str = "",
     version: str | None = None,
+    files: Sequence[str | PathLike[str]] = (),
 ) -> dict[str, Any]:
     """The summary of a result, of a failed run's partial result too.
 
     Parameters
     ----------
     result : Result
-    description : Description, optional
-        What was run; see :func:`describe`.
-    files : sequence of path, optional
-        Files written.
+    crossing : Crossing, optional
+        What was run; a result knows no more than names and numbers.
+    title : str, optional
     version : str, optional
         Of axlespan; this one when left out.
+    files : sequence of path, optional
+        Files written.
 
     Returns
     -------
     dict
-        Strict JSON: no NaN, no tuples.
+        Strict JSON: no NaN, no tuples. Names carry their units.
     """
     checks = verdicts(result.checks)
     good = result.outcome.code == "completed" and all(check["verdict"] == "pass" for check in checks)
@@ -99,7 +77,7 @@ def summary(
         "version": version or axlespan.__version__,
         "outcome": asdict(result.outcome),
         "verdict": "pass" if good else "attention",
-        "run": asdict(description or Description()) | _run(result),
+        "run": {"title": title, **_what(crossing), **_run(result)},
         "computation": _computation(result),
         "sensors": _sensors(result),
         "contact_forces": _contact_forces(result),
@@ -115,7 +93,13 @@ def summary(
 
 
 def write_summary(content: Mapping[str, Any], path: str | PathLike[str]) -> Path:
-    """Write a summary as JSON, whole or not at all."""
+    """Write a summary as JSON, whole or not at all.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
+    """
     place = Path(path)
     part = place.with_name(f".{place.name}.part")
     try:
@@ -124,6 +108,32 @@ def write_summary(content: Mapping[str, Any], path: str | PathLike[str]) -> Path
     finally:
         part.unlink(missing_ok=True)
     return place
+
+
+def _what(crossing: Crossing | None) -> dict[str, Any]:
+    names = (
+        "structure",
+        "structure_from_m",
+        "structure_to_m",
+        "train",
+        "vehicles",
+        "speed_start_m_per_s",
+        "speed_end_m_per_s",
+    )
+    if crossing is None:
+        return dict.fromkeys(names)
+    path = next(iter(crossing.structure.lines.values()))
+    speeds = crossing.motion.speeds
+    values = (
+        crossing.structure.name,
+        path.start,
+        path.stop,
+        crossing.train.name,
+        len(crossing.train.placements),
+        speeds[0],
+        speeds[-1],
+    )
+    return dict(zip(names, values, strict=True))
 
 
 def _time(result: Result, row: int) -> float:

@@ -50,12 +50,13 @@ def summary_lines(summary: Summary) -> list[str]:
 def _head(summary: Summary) -> list[str]:
     run, outcome = summary["run"], summary["outcome"]
     title = run["title"] or "Crossing"
+    length = None if run["structure"] is None else run["structure_to_m"] - run["structure_from_m"]
     lines = [f"{title}: {outcome['code']}"]
     if outcome["code"] != "completed":
         lines += [f"  {'failed':<13}{outcome['message']}"]
         lines += [f"  {'remedy':<13}{outcome['remedy']}"] if outcome.get("remedy") else []
     rows = [
-        ("structure", _joined(run["structure"], _with(run["structure_length_m"], "{:g} m"), _dofs(summary))),
+        ("structure", _joined(run["structure"], _with(length, "{:.6g} m"), _dofs(summary))),
         ("train", _joined(run["train"], _wheels(run))),
         ("speed", _speed(run)),
         ("time", _time(run)),
@@ -65,39 +66,28 @@ def _head(summary: Summary) -> list[str]:
 
 
 def _sensors(summary: Summary) -> list[str]:
+    known = {name: found for name, found in summary["sensors"].items() if found}
     rows = [
-        [
-            name,
-            *_pair(found, "displacement", "m", 1e3, "{:.4f}"),
-            *_pair(found, "acceleration", "m_per_s2", 1.0, "{:.4f}"),
-        ]
-        for name, found in summary["sensors"].items()
-        if found
+        [name, *_pair(found, "displacement", "m", 1e3), *_pair(found, "acceleration", "m_per_s2", 1.0)]
+        for name, found in known.items()
     ]
-    header = [
-        "Sensors",
-        "min [mm]",
-        "at [s]",
-        "max [mm]",
-        "at [s]",
-        "min [m/s2]",
-        "at [s]",
-        "max [m/s2]",
-        "at [s]",
-    ]
-    return _table(header, rows, "sensors")
+    header = ["Sensors"]
+    for unit in ("mm", "m/s2"):
+        header += [f"min [{unit}]", "at [s]", f"max [{unit}]", "at [s]"]
+    sizes = [max(abs(found[f"displacement_{end}_m"]) for end in ("min", "max")) for found in known.values()]
+    return _table(header, rows, "sensors with less", sizes)
 
 
-def _pair(found: Mapping[str, Any], quantity: str, unit: str, scale: float, form: str) -> list[str]:
+def _pair(found: Mapping[str, Any], quantity: str, unit: str, scale: float) -> list[str]:
     cells = []
     for end in ("min", "max"):
-        cells.append(form.format(scale * found[f"{quantity}_{end}_{unit}"]))
+        cells.append(_number(scale * found[f"{quantity}_{end}_{unit}"], 4))
         cells.append(f"{found[f'{quantity}_{end}_time_s']:.4g}")
     return cells
 
 
 def _forces(summary: Summary) -> list[str]:
-    forces, length = summary["contact_forces"], summary["run"]["structure_length_m"]
+    forces, run = summary["contact_forces"], summary["run"]
     if not forces:
         return []
     top, bottom = forces["largest_ratio_to_static"], forces["smallest_ratio_to_static"]
@@ -110,8 +100,11 @@ def _forces(summary: Summary) -> list[str]:
     if (bottom["contact"], bottom["time_s"]) != (rows[1][1]["contact"], rows[1][1]["time_s"]):
         rows.append(("most unloaded", bottom))
     header = ["Contact forces", "[kN]", "of static", "wheel", "at [m]", "at [s]", ""]
-    lines = _table(header, [[name, *_wheel_cells(row, length)] for name, row in rows], "rows")
-    lines.append(f"  unloading at most {100.0 * forces['largest_unloading']:.1f} % of the static force")
+    lines = _table(header, [[name, *_wheel_cells(row, run)] for name, row in rows], "rows")
+    if forces["largest_unloading"] <= 1.0:
+        lines.append(f"  unloading at most {100.0 * forces['largest_unloading']:.1f} % of the static force")
+    else:
+        lines.append("  unloading complete: see tension")
     missed = [
         f"{end} {forces[f'{end}_over_all_steps_N'] / 1e3:.3f} kN"
         for end in ("largest", "smallest")
@@ -121,12 +114,12 @@ def _forces(summary: Summary) -> list[str]:
     return lines + ([f"  over all steps, kept or not: {', '.join(missed)}"] if missed else [])
 
 
-def _wheel_cells(row: Mapping[str, Any], length: float | None) -> list[str]:
+def _wheel_cells(row: Mapping[str, Any], run: Mapping[str, Any]) -> list[str]:
     position = row["position_m"]
-    off = length is not None and not 0.0 <= position <= length
+    off = run["structure"] is not None and not run["structure_from_m"] <= position <= run["structure_to_m"]
     return [
-        f"{row['force_N'] / 1e3:.3f}",
-        f"{row['ratio_to_static']:.4f}",
+        _number(row["force_N"] / 1e3, 3),
+        _number(row["ratio_to_static"], 4),
         row["contact"],
         f"{position:.3f}",
         f"{row['time_s']:.4g}",
@@ -153,10 +146,10 @@ def _vehicles(summary: Summary) -> list[str]:
     rows = [
         [
             f"{part} [{row['unit'].replace('^', '')}]",
-            f"{row['min']:.4f}",
+            _number(row["min"], 4),
             row["min_vehicle"],
             f"{row['min_time_s']:.4g}",
-            f"{row['max']:.4f}",
+            _number(row["max"], 4),
             row["max_vehicle"],
             f"{row['max_time_s']:.4g}",
         ]
@@ -167,22 +160,16 @@ def _vehicles(summary: Summary) -> list[str]:
 
 
 def _reactions(summary: Summary) -> list[str]:
-    rows = []
+    rows, sizes = [], []
     for name, found in summary["support_reactions"].items():
         unit = "N" if "min_N" in found else "N_m"
-        label = name if unit == "N" else f"{name} [kN m]"
         low, high = found[f"min_{unit}"] / 1e3, found[f"max_{unit}"] / 1e3
-        cells = [
-            f"{low:.3f}",
-            f"{found['min_time_s']:.4g}",
-            f"{high:.3f}",
-            f"{found['max_time_s']:.4g}",
-        ]
-        rows.append((max(abs(low), abs(high)), [label, *cells]))
-    if len(rows) > _ROWS:
-        rows.sort(key=lambda row: -row[0])
+        label = name if unit == "N" else f"{name} [kN m]"
+        times = [f"{found[f'{end}_time_s']:.4g}" for end in ("min", "max")]
+        rows.append([label, _number(low, 3), times[0], _number(high, 3), times[1]])
+        sizes.append(max(abs(low), abs(high)))
     header = ["Support reactions", "min [kN]", "at [s]", "max [kN]", "at [s]"]
-    return _table(header, [cells for _, cells in rows], "supports, the largest shown")
+    return _table(header, rows, "supports with less", sizes)
 
 
 def _checks(summary: Summary) -> list[str]:
@@ -210,11 +197,14 @@ def _files(summary: Summary) -> list[str]:
 # --- words ---------------------------------------------------------------------------------------
 
 
-def _table(header: Sequence[str], rows: Sequence[Sequence[str]], what: str) -> list[str]:
-    """Columns flush right, the first one flush left; no more than a few rows."""
+def _table(
+    header: Sequence[str], rows: Sequence[Sequence[str]], what: str, sizes: Sequence[float] = ()
+) -> list[str]:
+    """Columns flush right, the first one flush left; no more than a few rows, the largest ones."""
     if not rows:
         return []
-    shown = list(rows[:_ROWS])
+    order = sorted(range(len(rows)), key=lambda i: -sizes[i]) if sizes else range(len(rows))
+    shown = [rows[i] for i in sorted(order[:_ROWS])]
     first = max(_FIRST, len(header[0]), *(len(row[0]) + 2 for row in shown))
     widths = [max(len(row[i]) for row in [header, *shown]) + 2 for i in range(1, len(header))]
 
@@ -237,7 +227,7 @@ def _wheels(run: Mapping[str, Any]) -> str:
 
 
 def _speed(run: Mapping[str, Any]) -> str:
-    first, last = run["speed_m_per_s"], run["speed_end_m_per_s"]
+    first, last = run["speed_start_m_per_s"], run["speed_end_m_per_s"]
     if first is None:
         return ""
     if last is None or last == first:
@@ -270,7 +260,14 @@ def _computed(computation: Mapping[str, Any]) -> str:
 
 
 def _between(low: float, high: float) -> str:
-    return f"{high / 1e3:.3f}" if low == high else f"{low / 1e3:.3f} to {high / 1e3:.3f}"
+    ends = f"{low / 1e3:.3f}", f"{high / 1e3:.3f}"
+    return ends[0] if ends[0] == ends[1] else " to ".join(ends)
+
+
+def _number(value: float, decimals: int) -> str:
+    """Fixed decimals for most values, fewer for huge ones, and no minus before a zero."""
+    text = f"{value:.{decimals}f}" if abs(value) < 1e5 else f"{value:.5g}"
+    return text.removeprefix("-") if not text.strip("-0.") else text
 
 
 def _with(value: Any, form: str) -> str:

@@ -55,17 +55,18 @@ class Part(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class BeamPart:
-    """Beams between pairs of nodes."""
+    """Beams between pairs of nodes, or beside them: rigid arms of the given offsets then hold their ends."""
 
     name: str
     nodes: IntArray  # (n_element, 2)
     properties: BeamProperties
     components: tuple[str, ...] = COMPONENTS
     up: FloatArray | None = None  # a direction in the local x-z plane, (3,) or (n_element, 3)
+    offset: FloatArray | None = None  # from the nodes to the ends, global axes, (3,) or (n_element, 2, 3) [m]
 
     def coordinates(self, points: FloatArray) -> FloatArray:
-        """End points (n_element, 2, 3) [m]."""
-        return points[self.nodes]
+        """Ends of the axes (n_element, 2, 3) [m]."""
+        return points[self.nodes] if self.offset is None else points[self.nodes] + self.offset
 
     def frame(self, points: FloatArray) -> FloatArray:
         """Local axes (n_element, 3, 3) as rows."""
@@ -79,7 +80,11 @@ class BeamPart:
         keep = self.kept()
         pick = np.ix_(np.arange(len(ends)), keep, keep)
         k = beam.stiffness(ends, self.properties, frame)
-        return ElementMatrices(k[pick], beam.mass(ends, self.properties, frame)[pick])
+        m = beam.mass(ends, self.properties, frame)
+        if self.offset is not None:
+            arms = self._arms()
+            k, m = (arms.transpose(0, 2, 1) @ matrix @ arms for matrix in (k, m))
+        return ElementMatrices(k[pick], m[pick])
 
     def kept(self) -> IntArray:
         """Positions of the part's d.o.f. among the 12 of a beam in space."""
@@ -91,7 +96,17 @@ class BeamPart:
         full = beam.displacement_polynomials(
             self.coordinates(points), self.properties, self.frame(points), direction
         )
+        if self.offset is not None:
+            full = self._arms().transpose(0, 2, 1) @ full
         return full[:, self.kept()]
+
+    def _arms(self) -> FloatArray:
+        """Displacements of the ends per displacements of the nodes (n_element, 12, 12)."""
+        offset = np.broadcast_to(np.asarray(self.offset), (len(self.nodes), 2, 3))
+        result = np.zeros((len(offset), 12, 12))
+        for end, where in enumerate((slice(0, 6), slice(6, 12))):
+            result[:, where, where] = discrete.rigid_arm(offset[:, end])
+        return result
 
     def _check(self, ends: FloatArray) -> None:
         length = beam.lengths(ends)

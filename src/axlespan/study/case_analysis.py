@@ -96,7 +96,9 @@ class Analysis(Part):
     """All d.o.f. of the structure, or a reduced basis of modes."""
     modes: Count | None = None
     """Number of modes of a reduced basis."""
-    contact: Contact = RigidContact(kind="rigid")
+    contact: Annotated[Contact, Field(json_schema_extra=_CONTACTS.words_in_schema)] = RigidContact(
+        kind="rigid"
+    )
     """Contact of wheel and surface."""
     footprint: Annotated[
         Annotated[Literal["auto"], tag("word")] | Annotated[Footprint, tag("length")],
@@ -138,7 +140,7 @@ class Analysis(Part):
         ):
             if word not in available:
                 raise InputError(
-                    f"{word} is not available in this version", field=name, fix=f"Write {listed(available)}"
+                    "is not available in this version", field=name, fix=f"Write {listed(available)}"
                 )
         for name, key, wanted in (
             ("tolerance", "method", "iterative"),

@@ -150,7 +150,9 @@ class Crossing(Part):
     """Pairs of time and speed, linear between them and constant after the last."""
     start: Length = 0.0
     """Position of the first wheel at t = 0: negative before the structure."""
-    irregularity: Irregularity = NoIrregularity(kind="none")
+    irregularity: Annotated[Irregularity, Field(json_schema_extra=KINDS.words_in_schema)] = NoIrregularity(
+        kind="none"
+    )
     """Irregularity of the surface; none when left out."""
 
     @model_validator(mode="after")

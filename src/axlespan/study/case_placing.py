@@ -51,6 +51,6 @@ class Placed(Part):
         """
         if self.count > 1 and self.spacing is not None and self.spacing <= wheelbase:
             raise InputError(
-                f"must be more than {show(wheelbase, LENGTH)}, from first to last wheel of a vehicle",
+                f"must be more than {show(wheelbase, LENGTH)}, which is from the first wheel to the last",
                 field="spacing",
             )

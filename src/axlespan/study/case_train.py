@@ -175,14 +175,18 @@ def check_order(train: Sequence[Placed]) -> None:
     InputErrors
         Fields count from the train: ``"1.gap"``.
     """
-    faults = []
+    faults: list[InputError] = []
     for number, entry in enumerate(train):
         if number == 0:
-            for name, value in (("gap", entry.gap), ("offset", entry.offset or None)):
-                if value is not None:
-                    faults.append(
-                        InputError("is for later entries: nothing runs ahead of this", field=f"0.{name}")
-                    )
+            faults += [
+                InputError(
+                    "is for later entries: nothing runs ahead of this one",
+                    field=f"0.{name}",
+                    fix="Leave it out; start, of the crossing, moves the whole train",
+                )
+                for name, value in (("gap", entry.gap), ("offset", entry.offset or None))
+                if value is not None
+            ]
         elif entry.gap is None and entry.offset is None:
             ahead = train[number - 1]
             if ahead.spacing is None and ahead.needs_spacing:

@@ -79,6 +79,11 @@ class Kinds:
             raise InputError(f"no such kind of {self.what}", field=self.key, value=word, fix=fix)
         return raw
 
+    def words_in_schema(self, schema: dict[str, Any]) -> None:
+        """Add the kinds that may be written as a word alone to the JSON Schema of a field."""
+        mappings = {key: schema.pop(key) for key in ("oneOf", "anyOf", "discriminator") if key in schema}
+        schema["anyOf"] = [{"enum": list(self.words_alone)}, mappings]
+
     def discriminator(self) -> Discriminator:
         """Return what pydantic asks for the mark of a kind."""
         return Discriminator(lambda raw: f"{_OPEN}{_kind_of(raw, self.key)}{_CLOSE}")

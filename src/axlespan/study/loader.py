@@ -114,16 +114,11 @@ def _read_text(name: str) -> str:
     here = Place(name)
     try:
         about = os.stat(name)
-        if stat.S_ISDIR(about.st_mode):
-            cases = sorted(p.name for p in Path(name).glob("*.y*ml"))
-            fix = (
-                f"Name a file in it, such as {os.path.join(name, cases[0])}" if cases else "Name a case file"
-            )
-            raise InputError("is a folder, not a case file", place=here, fix=fix)
-        if about.st_size > LARGEST:
-            raise _too_large(here)
-        with open(name, "rb") as stream:
-            raw = stream.read(LARGEST + 1)  # a pipe does not say how long it is
+        if not stat.S_ISDIR(about.st_mode) and about.st_size <= LARGEST:
+            with open(name, "rb") as stream:
+                raw = stream.read(LARGEST + 1)  # a pipe does not say how long it is
+        else:
+            raw = b""
     except FileNotFoundError:
         raise InputError("no such file", place=here, fix=_other_file(name)) from None
     except PermissionError:
@@ -131,7 +126,11 @@ def _read_text(name: str) -> str:
     except (OSError, ValueError) as error:
         words = getattr(error, "strerror", None) or str(error)
         raise InputError(f"cannot be read: {words}", place=here) from None
-    if len(raw) > LARGEST:
+    if stat.S_ISDIR(about.st_mode):
+        cases = sorted(p.name for p in Path(name).glob("*.y*ml"))
+        fix = f"Name a file in it, such as {os.path.join(name, cases[0])}" if cases else "Name a case file"
+        raise InputError("is a folder, not a case file", place=here, fix=fix)
+    if max(len(raw), about.st_size) > LARGEST:
         raise _too_large(here)
     return _decoded(raw, here)
 

@@ -49,7 +49,7 @@ Wavelength = Annotated[float, Measured(LENGTH, above=0.0, believable=(1e-3, 1e4)
 Thickness = Annotated[float, Measured(LENGTH, above=0.0, believable=(1e-4, 20.0))]
 Footprint = Annotated[float, Measured(LENGTH, at_least=0.0, believable=(1e-3, 5.0))]
 Area = Annotated[float, Measured(AREA, above=0.0, believable=(1e-7, 1e3))]
-SecondMoment = Annotated[float, Measured(SECOND_MOMENT, above=0.0, believable=(1e-14, 1e5))]
+SecondMoment = Annotated[float, Measured(SECOND_MOMENT, above=0.0, believable=(1e-14, 1e3))]
 Modulus = Annotated[float, Measured(PRESSURE, above=0.0, believable=(1e6, 2e12))]
 PoissonRatio = Annotated[float, Measured(NUMBER, above=-1.0, below=0.5)]
 Density = Annotated[float, Measured(DENSITY, above=0.0, believable=(20.0, 25e3))]

@@ -79,7 +79,7 @@ def read_yaml(text: str, file: str) -> Document:
     if strange:
         line, column = _line_and_column(text, strange.start())
         rule = f"a control character, U+{ord(strange[0]):04X}, stands here"
-        raise InputError(rule, place=Place(file, line, column), fix="Delete it, if this is a text file")
+        raise InputError(rule, place=Place(file, line, column), fix="Delete it, if this is text")
     parser = YAML(typ="safe", pure=True)
     try:
         with warnings.catch_warnings():
@@ -89,7 +89,15 @@ def read_yaml(text: str, file: str) -> Document:
         raise in_words(error, text, file) from None
     except RecursionError:
         raise InputError("is nested too deeply", place=Place(file, 1, 1)) from None
-    except (YAMLError, ValueError, LookupError, TypeError, AttributeError, AssertionError) as error:
+    except (
+        YAMLError,
+        ValueError,
+        LookupError,
+        TypeError,
+        AttributeError,
+        ArithmeticError,
+        AssertionError,
+    ) as error:
         # the parser lets some of its own slips through on odd input; to the user it is the same: no YAML
         raise InputError(f"is no YAML that can be read: {error}", place=Place(file)) from None
     if node is None or (_is_blank(node) and not text.strip(" -\t\r\n")):
@@ -211,7 +219,8 @@ class _Reader:
         except ValueError:
             return text
         if kind not in ("str", "timestamp", "merge", "value"):
-            self._fault(f"tags such as {node.tag} are not read", node, fix="Delete the tag")
+            tag = str(node.tag).replace(_TAG, "!!")
+            self._fault(f"tags such as {tag} are not read", node, fix="Delete the tag")
         return text
 
     def _source(self, node: Node) -> Written | None:

@@ -16,16 +16,16 @@ _ASTRAY: Final = "is indented like none of the lines above"
 # pattern in the parser's words: (rule, fix); <0> stands for what the pattern caught
 _WORDS: Final[dict[str, tuple[str, str]]] = {
     r"character '\\t'": ("a tab stands here", "Indent with spaces"),
-    r"character '(.)' that cannot start": ("a value cannot begin with <0>", _QUOTES),
+    r"character '(.)' that cannot start": ("a value cannot begin with '<0>'", _QUOTES),
     r"sequence entries are not allowed": ("a list cannot begin here", "Begin it on the next line"),
     r"unexpected end of stream": ("the quotes are not closed", "Close them at the end of the text"),
     r"undefined alias '(.*)'": ("no anchor &<0> stands before this alias", "Name what it repeats with &<0>"),
     r"unknown escape character": ("a backslash stands in double quotes", "Use single quotes"),
     r"expected the node content, but found '([,:\]}])'": (
-        "a value is missing before <0>",
-        "Write it, or delete <0>",
+        "a value is missing before '<0>'",
+        "Write it, or delete '<0>'",
     ),
-    r"found '([\]}])'": ("<0> closes nothing", "Delete it, or open it before"),
+    r"found '([\]}])'": ("'<0>' closes nothing", "Delete it, or open it before"),
     r"found '?<block (?:mapping|sequence) start>": (_ASTRAY, _ALIKE),
     r"expected <block end>, but found '-'": (
         "an entry of a list stands among keys",

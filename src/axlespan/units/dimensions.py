@@ -82,7 +82,9 @@ ROTATIONAL_STIFFNESS: Final = Dimension(
 HERTZ_STIFFNESS: Final = Dimension(
     "a Hertz stiffness", (-0.5, 1, -2, 0), "N/m^1.5", "1.15e11 N/m^1.5", ("N/m^1.5",)
 )
-DAMPING: Final = Dimension("a damping constant", (0, 1, -1, 0), "Ns/m", "20 kNs/m", ("MNs/m", "kNs/m", "Ns/m"))
+DAMPING: Final = Dimension(
+    "a damping constant", (0, 1, -1, 0), "Ns/m", "20 kNs/m", ("MNs/m", "kNs/m", "Ns/m")
+)
 ROTATIONAL_DAMPING: Final = Dimension(
     "a rotational damping constant",
     (2, 1, -1, -1),

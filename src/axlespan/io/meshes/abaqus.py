@@ -170,7 +170,7 @@ class _Reader:
             fix = "Write the coordinates in the global rectangular system."
             raise InputError("must be R (rectangular)", field="*NODE, SYSTEM", place=keyword.place, fix=fix)
         labels, points = keyword.node_table()
-        self.current.nodes.append(NodeRows(labels, points, keyword.numbers))
+        self.current.nodes.append(NodeRows(labels, points, keyword.numbers, keyword.numbers))
         if keyword.parameters.get("NSET"):
             self.current.node_sets.append(SetDefinition(keyword.parameters["NSET"], keyword, "", labels))
 

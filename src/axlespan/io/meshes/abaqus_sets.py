@@ -163,7 +163,7 @@ class _Resolver:
         if key.isdecimal() and len(key) < 16:
             lines = keyword.numbers[row : row + 1]
             return scope.lookup.positions(np.array([int(key)]), lines, "member of a set") + scope.first
-        error = nearest(word, sorted(self.shown.values()), "set")
+        error = nearest(key, sorted(self.definitions), "set")
         raise InputError(
             error.rule,
             field=f"*{keyword.name}",

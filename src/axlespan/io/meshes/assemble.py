@@ -26,7 +26,8 @@ class NodeRows:
 
     labels: IntArray  # (n,)
     points: FloatArray  # (n, 3) [m]
-    lines: IntArray  # (n,) line numbers, 0 where unknown
+    lines: IntArray  # (n,) line numbers of the labels, 0 where unknown
+    point_lines: IntArray  # (n,) of the coordinates
 
     @classmethod
     def joined(cls, parts: Sequence[NodeRows]) -> NodeRows:
@@ -35,6 +36,7 @@ class NodeRows:
             np.concatenate([np.empty(0, dtype=np.int64), *(part.labels for part in parts)]),
             np.concatenate([np.empty((0, 3)), *(part.points for part in parts)]),
             np.concatenate([np.empty(0, dtype=np.int64), *(part.lines for part in parts)]),
+            np.concatenate([np.empty(0, dtype=np.int64), *(part.point_lines for part in parts)]),
         )
 
 
@@ -132,7 +134,7 @@ def assemble(
         rule = f"must be finite and at most {LARGEST_COORDINATE:g} m in size"
         field = f"coordinates of node {nodes.labels[row]}"
         raise InputError(
-            rule, field=field, value=nodes.points[row].tolist(), place=at(file, nodes.lines[row])
+            rule, field=field, value=nodes.points[row].tolist(), place=at(file, nodes.point_lines[row])
         )
     lookup = Lookup(nodes.labels, nodes.lines, file, "node")
     blocks, places = _blocks(elements, lookup)

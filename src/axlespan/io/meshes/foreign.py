@@ -57,6 +57,15 @@ for i, name in enumerate(names["point"]):
 for i, name in enumerate(names["cell"]):
     parts = [plain(part) + first for part, first in zip(mesh.cell_sets[name], starts)]
     arrays[f"cell_set{i}"] = np.concatenate([np.empty(0, np.int64), *parts])
+for key, blocks in ({} if mesh.cell_sets else mesh.cell_data).items():
+    parts = [np.asarray(part) for part in blocks]
+    if not parts or any(part.ndim != 1 or part.dtype.kind not in "iu" for part in parts):
+        continue
+    values = np.concatenate(parts).astype(np.int64)
+    distinct = np.unique(values)
+    for value in distinct.tolist() if len(distinct) <= 1000 and len(values) == start else ():
+        arrays[f"cell_set{len(names['cell'])}"] = np.flatnonzero(values == value)
+        names["cell"].append(f"{key}-{value}")
 arrays["about"] = np.array(json.dumps({"kinds": kinds, "names": names}))
 np.savez(target, **arrays)
 """
@@ -66,6 +75,9 @@ def read_with_meshlane(
     path: str | PathLike[str], file_format: str | None = None, *, timeout: float = 600.0
 ) -> Mesh:
     """Read a mesh through meshlane (``pip install axlespan[mesh]``).
+
+    Named sets come along where the format has them. Where it has whole numbers for elements instead (regions,
+    references, properties), they become sets: ``medit:ref-3``.
 
     Parameters
     ----------
@@ -143,7 +155,8 @@ def _mesh(file: str, arrays: dict[str, npt.NDArray[np.generic]]) -> Mesh:
         )
     points = np.column_stack([points, np.zeros((len(points), 3 - points.shape[1]))])
     labels = np.arange(1, len(points) + 1)
-    nodes = NodeRows(labels, points, np.zeros_like(labels))
+    none = np.zeros_like(labels)
+    nodes = NodeRows(labels, points, none, none)
     elements, start = [], 1
     for i, (name, count) in enumerate(kinds):
         table = np.asarray(arrays.get(f"cells{i}", np.empty((0, 0))), dtype=np.int64)

@@ -146,7 +146,8 @@ def _nodes_4(source: _Bytes, sections: Mapping[str, int]) -> NodeRows:
         if not 3 <= width <= 6:
             raise source.error("must have a dimension between 0 and 3")
         points = source.array("f8", count * width).reshape(count, width)[:, :3].astype(np.float64)
-        parts.append(NodeRows(labels, points, np.zeros(count, dtype=np.int64)))
+        none = np.zeros(count, dtype=np.int64)
+        parts.append(NodeRows(labels, points, none, none))
     source.close()
     nodes = NodeRows.joined(parts)
     if len(nodes.labels) != total:
@@ -191,7 +192,8 @@ def _nodes_2(source: _Bytes, sections: Mapping[str, int]) -> NodeRows:
     rows = source.array([("label", "i4", 1), ("point", "f8", 3)], count)
     source.close()
     labels = rows["label"][:, 0].astype(np.int64)
-    return NodeRows(labels, rows["point"].astype(np.float64), np.zeros(count, dtype=np.int64))
+    none = np.zeros(count, dtype=np.int64)
+    return NodeRows(labels, rows["point"].astype(np.float64), none, none)
 
 
 def _elements_2(source: _Bytes, sections: Mapping[str, int]) -> tuple[TypeRows, ...]:

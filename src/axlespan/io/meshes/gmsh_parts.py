@@ -131,7 +131,7 @@ def mesh_of(file: str, parts: GmshParts) -> Mesh:
     refuse(
         file,
         (
-            unknown_type(rows.type, len(rows.labels), int(rows.lines.min(initial=0)))
+            unknown_type(rows.type, len(rows.labels), int(rows.lines[0]) if len(rows.lines) else 0)
             for rows in parts.elements
             if rows.type not in KIND_OF_TYPE
         ),

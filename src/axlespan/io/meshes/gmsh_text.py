@@ -15,6 +15,7 @@ from axlespan.errors import InputError, Place
 from axlespan.io.lines import Lines, numbers_of, whole
 from axlespan.io.meshes.assemble import NodeRows, Unsupported, refuse
 from axlespan.io.meshes.gmsh_parts import (
+    KIND_OF_TYPE,
     GmshParts,
     TypeRows,
     dimension_of,
@@ -144,9 +145,8 @@ def _nodes_4(lines: Lines) -> NodeRows:
             raise lines.error("must have a dimension between 0 and 3 (block of nodes)")
         labels, numbers = lines.table(count, 1, "node number")
         points, at_lines = lines.table(count, 3 + extra, "coordinates")
-        parts.append(
-            NodeRows(whole(labels[:, 0], numbers, lines.file, "node number"), points[:, :3], at_lines)
-        )
+        whole_labels = whole(labels[:, 0], numbers, lines.file, "node number")
+        parts.append(NodeRows(whole_labels, points[:, :3], numbers, at_lines))
     lines.finish("nodes")
     nodes = NodeRows.joined(parts)
     if len(nodes.labels) != total:
@@ -165,7 +165,7 @@ def _elements_4(lines: Lines, groups: Mapping[tuple[int, int], tuple[int, ...]])
         if not 0 <= dimension <= 3:
             raise lines.error("must have a dimension between 0 and 3 (block of elements)")
         width, found = node_count(kind), found + count
-        if width is None:
+        if width is None or kind not in KIND_OF_TYPE:
             strange.append(unknown_type(kind, count, lines.place().line or 0))
             lines.take(count, "elements")
             continue
@@ -190,7 +190,7 @@ def parse_version_2(file: str, text: str) -> GmshParts:
     (count,) = lines.integers("nodes", 1)
     table, numbers = lines.table(count, 4, "node and its coordinates")
     lines.finish("nodes")
-    nodes = NodeRows(whole(table[:, 0], numbers, file, "node number"), table[:, 1:], numbers)
+    nodes = NodeRows(whole(table[:, 0], numbers, file, "node number"), table[:, 1:], numbers, numbers)
     return GmshParts(_names(sections), nodes, _elements_2(_section(file, sections, "Elements")))
 
 
@@ -213,7 +213,7 @@ def _elements_2(lines: Lines) -> tuple[TypeRows, ...]:
     strange: list[Unsupported] = []
     for kind in np.unique(types).tolist():
         rows, width = types == kind, node_count(kind)
-        if width is None:
+        if width is None or kind not in KIND_OF_TYPE:
             strange.append(unknown_type(kind, int(rows.sum()), int(numbers[rows].min())))
         elif np.any(bad_rows := rows & (widths != 3 + tags + width)):
             position = 1 + int(np.argmax(bad_rows))

@@ -1,0 +1,116 @@
+"""Displacements inside shell elements: quadratic, linked to the rotations of the nodes.
+
+The sides' arches (1 - ξ²)/8 (θ_i - θ_j) × (x_j - x_i) of `shell_sides` are blended into the element, so the
+field is continuous from element to element; what turns into shear (the cubic part) is left out. Mass, loads
+and the places under wheels all use this one field.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from axlespan.elements import shell_quadrilateral, shell_sides, shell_triangle
+from axlespan.elements.shell_geometry import (
+    FlatGeometry,
+    ShellKind,
+    flatten,
+    link_matrices,
+    per_element,
+)
+from axlespan.errors import InputError
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def shape_functions(kind: ShellKind, natural: FloatArray) -> FloatArray:
+    """Linear or bilinear shape functions (..., n_node) at natural points (..., 2)."""
+    family = shell_quadrilateral.bilinear if kind == "shell4" else shell_triangle.linear
+    return family(natural)[0]
+
+
+def integration_rule(kind: ShellKind, geometry: FlatGeometry) -> tuple[FloatArray, FloatArray]:
+    """Natural points (n_point, 2) and weights (n_e, n_point) [m^2], exact to degree 4 or more."""
+    if kind == "shell4":
+        natural, weight = shell_quadrilateral.natural_rule()
+        _, slope = shell_quadrilateral.bilinear(natural)
+        return natural, weight * np.linalg.det(np.einsum("apn,eni->epai", slope, geometry.plane))
+    natural, weight = shell_triangle.natural_rule()
+    return natural, 2.0 * geometry.area[:, None] * weight
+
+
+def plane_rows(kind: ShellKind, geometry: FlatGeometry, natural: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Displacements of points of the plane per d.o.f. of the plane.
+
+    Parameters
+    ----------
+    natural : array (n_point, 2) or (n_e, n_point, 2)
+        Natural coordinates.
+
+    Returns
+    -------
+    membrane : array (n_e, n_point, 2, 3 n_node)
+        Rows u and v per u, v, φ of each node.
+    bending : array (n_e, n_point, 3, 3 n_node)
+        Rows w, θ_x and θ_y per w, θ_x, θ_y of each node.
+    """
+    n_e, n = geometry.height.shape
+    n_point = natural.shape[-2]
+    family = shell_quadrilateral if kind == "shell4" else shell_triangle
+    value = np.broadcast_to(shape_functions(kind, natural), (n_e, n_point, n))
+    arched = np.broadcast_to(family.bubbles(natural) / 8.0, (n_e, n_point, n))
+    left = np.stack([-geometry.sides[..., 1], geometry.sides[..., 0]], axis=-1)
+    membrane = np.zeros((n_e, n_point, 2, n, 3))
+    membrane[:, :, 0, :, 0] = membrane[:, :, 1, :, 1] = value
+    bulge = np.einsum("eps,esi->epis", arched, left)
+    membrane[..., 2] = bulge - np.roll(bulge, 1, axis=3)
+    bending = np.zeros((n_e, n_point, 3, n, 3))
+    for row in range(3):
+        bending[:, :, row, :, row] = value
+    bending = bending.reshape(n_e, n_point, 3, 3 * n)
+    bending[:, :, 0] += arched @ (geometry.lengths[..., None] * shell_sides.arch(geometry))
+    return membrane.reshape(n_e, n_point, 2, 3 * n), bending
+
+
+def interpolation(
+    kind: ShellKind, coordinates: npt.ArrayLike, natural: npt.ArrayLike, offset: npt.ArrayLike = 0.0
+) -> FloatArray:
+    """Displacements of points of the reference surface per nodal d.o.f., in global axes.
+
+    The rows of E in N12 (28), and with E = Dᵀ the nodal forces of a force at the point.
+
+    Parameters
+    ----------
+    kind, coordinates, offset
+        As in `axlespan.elements.shells.stiffness`.
+    natural : array (n_point, 2) or (n_e, n_point, 2)
+        Natural coordinates, the same in all elements or for each.
+
+    Returns
+    -------
+    array (n_e, n_point, 3, 6 n_node)
+
+    Examples
+    --------
+    >>> square = [[[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 2.0, 0.0]]]
+    >>> interpolation("shell4", square, [[-1.0, -1.0]])[0, 0, 2].nonzero()[0]
+    array([2])
+    """
+    geometry = flatten(kind, coordinates)
+    n_e, n = geometry.height.shape
+    where = np.asarray(natural, dtype=float)
+    if where.shape[-1:] != (2,) or where.ndim not in (2, 3) or (where.ndim == 3 and len(where) != n_e):
+        raise InputError(
+            f"must have the shape (n_point, 2) or ({n_e}, n_point, 2)", field="natural", value=where.shape
+        )
+    reach = per_element(offset, n_e, "offset")
+    to_membrane, to_bending = link_matrices(geometry, reach)
+    membrane, bending = plane_rows(kind, geometry, where)
+    rows = np.concatenate([membrane @ to_membrane[:, None], bending[:, :, :1] @ to_bending[:, None]], axis=2)
+    # back from the mid-surface of the plane to the reference surface: u + θ × (h - offset) n
+    turn = bending[:, :, 1:] @ to_bending[:, None]
+    height = (shape_functions(kind, where) * geometry.height[:, None]).sum(axis=-1)
+    back = (height - reach[:, None])[..., None]
+    rows[:, :, 0] += back * turn[:, :, 1]
+    rows[:, :, 1] -= back * turn[:, :, 0]
+    return geometry.axes.transpose(0, 2, 1)[:, None] @ rows

@@ -1,0 +1,223 @@
+"""Crossings of one structure that advance side by side, and the loop that drives them.
+
+All lanes share the factored structure; each has its own train, speed, irregularity and length of run. A
+lane that is finished leaves at the end of a stretch. A lane that fails leaves too, and the others repeat
+the stretch without it, so that nothing of it reaches them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from axlespan.dynamics.integrator import State
+from axlespan.errors import AnalysisError
+from axlespan.interaction.bodies import FleetBody, PreparedStructure, StructureBody
+from axlespan.interaction.contact_system import Stretch, stretch_of
+from axlespan.interaction.plan import Fleet, Plan, joined
+from axlespan.interaction.recorder import Recorder
+from axlespan.interaction.start import Start
+from axlespan.interaction.tape import LaneTape, Tape, Watched
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+# Steps of a stretch, and the entries of contact systems that one may hold.
+_STRETCH, _ENTRIES = 256, 4_000_000
+
+
+@dataclass(eq=False)
+class Lane:
+    """One crossing on its way."""
+
+    plan: Plan
+    recorder: Recorder
+    structure: State
+    fleet: State
+    forces: FloatArray  # (n_contact,) [N]
+    load: FloatArray  # Eᵀ X (n,) on the structure [N]
+    done: int = 0  # time index of the last completed step
+    error: AnalysisError | None = None
+
+    @classmethod
+    def at_start(cls, plan: Plan, start: Start, recorder: Recorder) -> Lane:
+        """A crossing at time zero."""
+        return cls(plan, recorder, start.structure, start.fleet, start.forces, start.load)
+
+    @property
+    def left(self) -> int:
+        """Steps that are still to be made."""
+        return self.plan.settings.steps - self.done
+
+
+class Convoy:
+    """The bodies of several lanes at a time, and what is written down of them."""
+
+    def __init__(self, lanes: Sequence[Lane], prepared: PreparedStructure) -> None:
+        self.lanes, self.prepared = list(lanes), prepared
+        plans = [lane.plan for lane in lanes]
+        self.plans = plans
+        settings = plans[0].settings
+        self.forces = plans[0].forces  # external forces on the structure, the same for all
+        self.structure = StructureBody(
+            prepared, [lane.structure for lane in lanes], [lane.load for lane in lanes]
+        )
+        fleets = [plan.fleet for plan in plans]
+        self.joint: Fleet = joined(fleets)
+        self.contacts = _slices([len(fleet.weight) for fleet in fleets])
+        self.coupled = _slices([len(fleet.coupled) for fleet in fleets])
+        self.vehicle_dofs = _slices([fleet.matrices.size for fleet in fleets])
+        self.fleet: FleetBody | None = None
+        if len(self.joint.coupled):
+            values = np.concatenate([lane.fleet.values for lane in lanes], axis=1)
+            forces = np.concatenate([lane.forces for lane in lanes])[self.joint.coupled]
+            self.fleet = FleetBody(self.joint, settings.method, settings.time_step, State(values), forces)
+        dofs = np.unique(np.concatenate([lane.recorder.selected for lane in lanes]))
+        watched = Watched(dofs, lanes[0].recorder.balance.sums)
+        self.tape = Tape(watched, len(lanes), self.joint.matrices.size, len(self.joint.weight))
+
+    def stretch(self, *, systems: bool = True) -> Stretch:
+        """The next steps: as many as every lane still has, and as memory allows."""
+        size = sum(plan.rows.n_contact**2 for plan in self.plans)
+        n_step = min(max(16, min(_STRETCH, _ENTRIES // max(size, 1))), *(lane.left for lane in self.lanes))
+        return stretch_of(
+            self.plans, self.lanes[0].done + 1, n_step, self.structure, self.fleet, systems=systems
+        )
+
+    def external(self, stretch: Stretch) -> FloatArray | None:
+        """Weighted factors (n_step, n_term) of the external forces; None if there are none."""
+        if not self.forces.n_term:
+            return None
+        times = self.plans[0].times_of(stretch.first - 1 + np.arange(stretch.n_step + 1))
+        return self.forces.weighted(times, self.plans[0].settings.method)
+
+    def known_load(self, stretch: Stretch, k: int) -> FloatArray | None:
+        """Eᵀ P of the moving forces at a step; None where there are none on the structure."""
+        if not len(stretch.forced):
+            return None
+        weights = self.joint.weight[stretch.forced]
+        return self.structure.path_load(stretch.forced_held[k], stretch.forced_weights[k], weights)
+
+    def tape_of(self, lane: int) -> LaneTape:
+        """The tape of one lane."""
+        dofs = self.lanes[lane].recorder.selected
+        return self.tape.of(lane, dofs, self.vehicle_dofs[lane], self.contacts[lane])
+
+    def moment(self, lane: int) -> tuple[State, State, FloatArray, FloatArray]:
+        """Structure, vehicles, Eᵀ X (n,) and contact forces (n_coupled,) of one lane at the last completed step."""
+        if self.fleet is None:
+            return (
+                self.structure.lane(lane),
+                State(np.zeros((3, 0))),
+                self.structure.load_of(lane),
+                np.zeros(0),
+            )
+        vehicles = State(self.fleet.state.values[:, self.vehicle_dofs[lane]])
+        return (
+            self.structure.lane(lane),
+            vehicles,
+            self.structure.load_of(lane),
+            self.fleet.forces[self.coupled[lane]],
+        )
+
+    def contact_at(self, stretch: Stretch, k: int, lane: int) -> tuple[FloatArray, FloatArray]:
+        """Displacements of the wheels of one lane and of the line under them (n_coupled,), after step k."""
+        assert self.fleet is not None
+        line = stretch.gap[k].copy()
+        if len(stretch.into):
+            line[stretch.into] += self.structure.gather(stretch.flat[k], stretch.weights[k])
+        return self.fleet.at_wheels()[self.coupled[lane]], line[self.coupled[lane]]
+
+    def count(self, what: str, number: int) -> None:
+        """Count something that a coupling does, for the summary of the first lane."""
+        counts = self.lanes[0].recorder.counts
+        counts[what] = counts.get(what, 0) + number
+
+    def save(self, n_step: int) -> None:
+        """Put the states of the bodies back into the lanes, after so many steps."""
+        for i, lane in enumerate(self.lanes):
+            lane.structure, lane.load = self.structure.lane(i), self.structure.load_of(i)
+            lane.forces = self.tape_of(i).forces[-1].copy()
+            if self.fleet is not None:
+                lane.fleet = State(self.fleet.state.values[:, self.vehicle_dofs[i]].copy())
+            lane.done += n_step
+
+
+#: One step of a convoy; returns all contact forces (n_contact,) of the joint fleet.
+Couple = Callable[[Convoy, Stretch, int, FloatArray | None], FloatArray]
+
+
+def drive(
+    lanes: Sequence[Lane], prepared: PreparedStructure, couple: Couple, *, systems: bool = True
+) -> None:
+    """Advance all lanes to their ends; failed ones keep their error and what was computed."""
+    convoy = Convoy(lanes, prepared)
+    for lane in lanes:
+        lane.recorder.begin(lane.structure, lane.fleet, lane.forces, lane.load)
+    while convoy.lanes:
+        stretch = convoy.stretch(systems=systems)
+        failed = _make(convoy, stretch, couple)
+        if failed:
+            convoy = _without(convoy, failed, prepared)
+            continue
+        convoy.save(stretch.n_step)
+        for i, lane in enumerate(convoy.lanes):
+            lane.recorder.work_up(stretch.steps, stretch.crossings[i].positions, convoy.tape_of(i))
+        if any(lane.left == 0 for lane in convoy.lanes):
+            staying = [lane for lane in convoy.lanes if lane.left]
+            if not staying:
+                return
+            convoy = Convoy(staying, prepared)
+
+
+def _make(convoy: Convoy, stretch: Stretch, couple: Couple) -> dict[int, tuple[int, str | None]]:
+    """Make the steps of a stretch; lanes that failed, with the step inside the stretch and a message."""
+    external = convoy.external(stretch)
+    monitors = [lane.recorder.energy for lane in convoy.lanes]
+    convoy.tape.start(stretch.n_step)
+    message: str | None = None
+    with np.errstate(over="ignore", invalid="ignore"):
+        for k in range(stretch.n_step):
+            try:
+                forces = couple(convoy, stretch, k, None if external is None else external[k])
+            except AnalysisError as error:
+                message = str(error)
+                break
+            convoy.tape.take(convoy.structure, convoy.fleet, forces)
+            for i, monitor in enumerate(monitors):
+                if monitor.looks_at(stretch.first + k):
+                    monitor.look(stretch.first + k, *convoy.moment(i))
+    bad = {i: convoy.lanes[i].recorder.first_bad(convoy.tape_of(i)) for i in range(len(convoy.lanes))}
+    found = {i: (k, None) for i, k in bad.items() if k is not None}
+    if found:
+        earliest = min(k for k, _ in found.values())
+        return {i: entry for i, entry in found.items() if entry[0] == earliest}
+    if message is not None:
+        return dict.fromkeys(range(len(convoy.lanes)), (convoy.tape.filled, message))
+    if convoy.fleet is not None:
+        for i, lane in enumerate(convoy.lanes):
+            lane.recorder.compatibility.look(*convoy.contact_at(stretch, stretch.n_step - 1, i))
+    return {}
+
+
+def _without(
+    convoy: Convoy, failed: dict[int, tuple[int, str | None]], prepared: PreparedStructure
+) -> Convoy:
+    """Let failed lanes go, with their good steps kept; the others stand where they stood before the stretch."""
+    for i, (k, message) in failed.items():
+        lane, steps = convoy.lanes[i], convoy.lanes[i].done + 1 + np.arange(convoy.tape.filled)
+        positions = lane.plan.rows.positions(lane.plan.times_of(steps))
+        lane.error = lane.recorder.broken_off(steps, positions, convoy.tape_of(i), k, message)
+    staying = [lane for i, lane in enumerate(convoy.lanes) if i not in failed]
+    if staying:
+        return Convoy(staying, prepared)
+    convoy.lanes = []
+    return convoy
+
+
+def _slices(sizes: Sequence[int]) -> list[slice]:
+    ends = np.cumsum(sizes).tolist()
+    return [slice(end - size, end) for end, size in zip(ends, sizes, strict=True)]

@@ -1,0 +1,86 @@
+"""What the time loop writes down at every step: plain copies into arrays made once for a stretch."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from axlespan.interaction.bodies import FleetBody, StructureBody
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class LaneTape:
+    """The tape of one crossing over consecutive steps."""
+
+    near: FloatArray  # (3, n_step, n_selected) displacement, velocity, acceleration of selected d.o.f.
+    vehicles: FloatArray  # (3, n_step, n_vehicle_dof)
+    forces: FloatArray  # (n_step, n_contact) [N]
+    sums: FloatArray  # (n_step, n_sum) weighted sums over the structure
+
+    def upto(self, n_step: int) -> LaneTape:
+        """The first steps only."""
+        return LaneTape(
+            self.near[:, :n_step], self.vehicles[:, :n_step], self.forces[:n_step], self.sums[:n_step]
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Watched:
+    """What of the structure is written down: d.o.f., and sums over all d.o.f."""
+
+    dofs: IntArray  # (n_selected,) of all crossings together, sorted
+    sums: Sequence[
+        tuple[FloatArray, int]
+    ]  # vectors (n,) and 0, 1, 2 for displacement, velocity, acceleration
+
+
+class Tape:
+    """The tape of all crossings that advance side by side."""
+
+    def __init__(self, watched: Watched, lanes: int, n_vehicle_dof: int, n_contact: int) -> None:
+        self.watched, self._lanes = watched, lanes
+        self._sizes = (n_vehicle_dof, n_contact)
+        self._flat = (watched.dofs[:, None] * lanes + np.arange(lanes)).ravel()
+        self._n_step = 0
+
+    def start(self, n_step: int) -> None:
+        """Make room for a stretch."""
+        self.filled = 0
+        if n_step == self._n_step:
+            return
+        self._n_step = n_step
+        n_vehicle_dof, n_contact = self._sizes
+        self._near = np.zeros((n_step, 3, len(self._flat)))
+        self._vehicles = np.zeros((n_step, 3, n_vehicle_dof))
+        self._forces = np.zeros((n_step, n_contact))
+        self._sums = np.zeros((n_step, len(self.watched.sums), self._lanes))
+
+    def take(self, structure: StructureBody, fleet: FleetBody | None, forces: FloatArray) -> None:
+        """Write down the step just completed."""
+        k = self.filled
+        values = structure.state.values
+        if len(self._flat):
+            values.reshape(3, -1).take(self._flat, axis=1, out=self._near[k], mode="clip")
+        if fleet is not None:
+            self._vehicles[k] = fleet.state.values
+        self._forces[k] = forces
+        for i, (vector, which) in enumerate(self.watched.sums):
+            self._sums[k, i] = vector @ values[which]
+        self.filled = k + 1
+
+    def of(self, lane: int, dofs: IntArray, vehicle_dofs: slice, contacts: slice) -> LaneTape:
+        """The tape of one crossing: some watched d.o.f. (n_selected,), its vehicles' d.o.f. and contacts."""
+        n = self.filled
+        at = np.searchsorted(self.watched.dofs, dofs) * self._lanes + lane
+        return LaneTape(
+            self._near[:n, :, at].transpose(1, 0, 2),
+            self._vehicles[:n, :, vehicle_dofs].transpose(1, 0, 2),
+            self._forces[:n, contacts],
+            self._sums[:n, :, lane],
+        )
