@@ -222,8 +222,8 @@ def bodies(result):
 
 
 def difference(a, b):
-    peak = np.abs(b).max()
-    return np.abs(a - b).max() / peak if peak > 0.0 else np.abs(a - b).max()
+    """Largest difference relative to the peak of b."""
+    return np.abs(a - b).max(initial=0.0) / max(np.abs(b).max(initial=0.0), 1e-300)
 
 
 QUANTITIES = ("sensor_displacement", "contact_force", "support_reaction", "vehicle_displacement")
@@ -233,7 +233,7 @@ QUANTITIES = ("sensor_displacement", "contact_force", "support_reaction", "vehic
 def test_direct_is_literal(name):
     """To 1e-9 of the peak; N12 (18) loses about six digits of the accelerations, so 1e-7 for these."""
     direct, literal = run(name), run(name, "literal")
-    assert np.abs(literal.sensor_displacement).max() > 1e-4
+    assert np.abs(literal.sensor_displacement).max() > 1e-5  # something happens
     for quantity in QUANTITIES:
         assert difference(getattr(direct, quantity), getattr(literal, quantity)) < 1e-9, quantity
     assert difference(direct.sensor_velocity, literal.sensor_velocity) < 1e-8

@@ -25,7 +25,7 @@ class SupportAt:
     """A support at a position [m] along the beam; see :meth:`axlespan.model.model.Model.with_support`."""
 
     position: float
-    fixed: Sequence[str] = ("z",)
+    fixed: Sequence[str] | None = None  # z, unless it is elastic or moved
     stiffness: Mapping[str, float] | None = None
     damping: Mapping[str, float] | None = None
     motion: Mapping[str, Motion] | None = None
@@ -199,12 +199,19 @@ def _with_positions(grid: np.ndarray, positions: list[float]) -> np.ndarray:
     return grid
 
 
+def _fixed(support: SupportAt) -> Sequence[str]:
+    if support.fixed is not None:
+        return support.fixed
+    held = {*(support.stiffness or {}), *(support.damping or {}), *(support.motion or {})}
+    return () if "z" in held else ("z",)
+
+
 def _supported(model: Model, x: np.ndarray, supports: list[SupportAt]) -> Model:
     for i, support in enumerate(supports):
         node = int(np.argmin(np.abs(x - support.position)))
         model = model.with_support(
             node,
-            support.fixed,
+            _fixed(support),
             stiffness=support.stiffness,
             damping=support.damping,
             motion=support.motion,

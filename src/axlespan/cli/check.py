@@ -45,7 +45,7 @@ def _description(built: BuiltCase) -> list[str]:
         built.title,
         f"  structure   {structure.name}, {structure.length:g} m, {plan.structure.size} free d.o.f., mass "
         f"{system.total_mass() / 1e3:.6g} t, frequencies {', '.join(f'{f:.4g}' for f in modes.frequencies)} Hz",
-        f"  train       {train.name}, {len(train.placements)} vehicles, {plan.rows.n_contact} wheels, "
+        f"  train       {train.name}, {_counted(len(train.placements), 'vehicle')}, {_counted(plan.rows.n_contact, 'wheel')}, "
         f"{train.wheelbase:g} m from first wheel to last",
         *_vehicle_lines(built),
         f"  crossing    the first wheel runs from {head[0]:g} to {head[1]:g} m",
@@ -56,6 +56,10 @@ def _description(built: BuiltCase) -> list[str]:
     ]
     lines += [f"  note        {note}" for note in settings.notes]
     return [*lines, "The case is in order. Run it with: axlespan run CASE -o FOLDER"]
+
+
+def _counted(number: int, what: str) -> str:
+    return f"{number} {what}" if number == 1 else f"{number} {what}s"
 
 
 def _vehicle_lines(built: BuiltCase) -> list[str]:

@@ -48,17 +48,20 @@ class State:
     @property
     def u(self) -> FloatArray:
         """Displacements [m], a view."""
-        return self.values[0]
+        view: FloatArray = self.values[0]
+        return view
 
     @property
     def v(self) -> FloatArray:
         """Velocities [m/s], a view."""
-        return self.values[1]
+        view: FloatArray = self.values[1]
+        return view
 
     @property
     def a(self) -> FloatArray:
         """Accelerations [m/s^2], a view."""
-        return self.values[2]
+        view: FloatArray = self.values[2]
+        return view
 
     def copy(self) -> State:
         """An independent copy."""

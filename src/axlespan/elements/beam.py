@@ -21,6 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int_]
 
 #: d.o.f. of a beam element in its local axes, node by node.
 DOFS = ("x", "y", "z", "rx", "ry", "rz")
@@ -138,12 +139,13 @@ def _integrate(left: FloatArray, weight: FloatArray) -> FloatArray:
     return np.asarray(weight[:, None, None] * (left @ _MOMENTS @ left.transpose(0, 2, 1)))
 
 
-def _planes(
-    p: BeamProperties, length: FloatArray
-) -> list[tuple[tuple[npt.NDArray[np.int_], FloatArray], tuple[FloatArray, ...]]]:
+_Plane = tuple[tuple[IntArray, FloatArray], tuple[FloatArray, FloatArray, FloatArray]]
+
+
+def _planes(p: BeamProperties, length: FloatArray) -> list[_Plane]:
     xz = (p.bending_stiffness_y, p.shear_stiffness_z, p.rotary_inertia_y)
     xy = (p.bending_stiffness_z, p.shear_stiffness_y, p.rotary_inertia_z)
-    planes = []
+    planes: list[_Plane] = []
     for where, (bending, shear, rotary) in ((_BENDING_XZ, xz), (_BENDING_XY, xy)):
         phi = shear_parameter(np.asarray(bending), np.asarray(shear), length)
         planes.append((where, (np.asarray(bending), phi, np.asarray(rotary))))

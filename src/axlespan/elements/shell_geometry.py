@@ -150,9 +150,7 @@ def per_element(value: npt.ArrayLike, n_e: int, field: str) -> FloatArray:
     return np.broadcast_to(array, (n_e,))
 
 
-def link_matrices(
-    geometry: FlatGeometry, offset: npt.ArrayLike = 0.0, side_normals: FloatArray | None = None
-) -> tuple[FloatArray, FloatArray]:
+def link_matrices(geometry: FlatGeometry, offset: npt.ArrayLike = 0.0) -> tuple[FloatArray, FloatArray]:
     """Matrices from the nodal d.o.f. in global axes to those of the plane.
 
     Parameters
@@ -160,54 +158,26 @@ def link_matrices(
     geometry : FlatGeometry
     offset : float or array (n_e,)
         From the reference surface, where the nodes are, to the mid-surface along the normal [m].
-    side_normals : array (n_e, n_side, 3), optional
-        Normals of the curved surface along the sides; drilling rotations are then taken about them.
 
     Returns
     -------
     membrane, bending : array (n_e, 3 n_node, 6 n_node)
         Rows per node: u, v, φ and w, θ_x, θ_y.
     """
-    axes, n = geometry.axes, geometry.node_count
-    n_e = len(axes)
+    n_e, n = geometry.height.shape
     reach = np.broadcast_to(np.asarray(offset, dtype=float), (n_e,))[:, None] - geometry.height
-    membrane = np.zeros((n_e, n, 3, n, 6))
-    bending = np.zeros((n_e, n, 3, n, 6))
-    drill = _drilling(geometry, side_normals)
-    for k in range(n):
-        # (θ × d n) in the plane: (d θ_y, -d θ_x)
-        membrane[:, k, 0, k, :3], membrane[:, k, 1, k, :3] = axes[:, 0], axes[:, 1]
-        membrane[:, k, 0, k, 3:] = reach[:, k, None] * axes[:, 1]
-        membrane[:, k, 1, k, 3:] = -reach[:, k, None] * axes[:, 0]
-        membrane[:, k, 2, :, 3:] = drill[:, k]
-        bending[:, k, 0, k, :3] = axes[:, 2]
-        bending[:, k, 1, k, 3:], bending[:, k, 2, k, 3:] = axes[:, 0], axes[:, 1]
+    x, y, normal = (geometry.axes[:, None, k] for k in range(3))
+    membrane, bending = np.zeros((2, n_e, n, 3, n, 6))
+    node = np.arange(n)
+    # (θ × d n) in the plane: (d θ_y, -d θ_x)
+    turned = (reach[..., None] * y, -reach[..., None] * x)
+    for row, (axis, link) in enumerate(zip((x, y), turned, strict=True)):
+        membrane[:, node, row, node, :3] = axis.transpose(1, 0, 2)
+        membrane[:, node, row, node, 3:] = link.transpose(1, 0, 2)
+    membrane[:, node, 2, node, 3:] = bending[:, node, 0, node, :3] = normal.transpose(1, 0, 2)
+    bending[:, node, 1, node, 3:], bending[:, node, 2, node, 3:] = x.transpose(1, 0, 2), y.transpose(1, 0, 2)
     shape = (n_e, 3 * n, 6 * n)
     return membrane.reshape(shape), bending.reshape(shape)
-
-
-def _drilling(geometry: FlatGeometry, side_normals: FloatArray | None) -> FloatArray:
-    """Drilling rotations of the nodes from the rotation vectors, (n_e, n_node, n_node, 3).
-
-    On a curved surface the smooth field of rotations that goes with inextensional bending has no
-    difference about the surface's normal, but it has one about the normal of a flat element, which side by
-    side would stretch it. With the surface's normals n_s along the sides, φ is the field whose mean is that
-    of θ·n and whose differences along the sides are, by least squares, Δθ·n_s.
-    """
-    n_e, n = geometry.height.shape
-    normal = geometry.axes[:, 2]
-    if side_normals is None:
-        own = np.zeros((n_e, n, n, 3))
-        own[:, np.arange(n), np.arange(n)] = normal[:, None]
-        return own
-    if side_normals.shape != (n_e, n, 3):
-        raise InputError(
-            f"must have the shape ({n_e}, {n}, 3)", field="side_normals", value=side_normals.shape
-        )
-    difference = np.roll(np.eye(n), 1, axis=1) - np.eye(n)
-    spread = np.linalg.pinv(difference)
-    drill: FloatArray = np.einsum("as,esi,sb->eabi", spread, side_normals, difference)
-    return drill + normal[:, None, None] / n
 
 
 def diagonals(points: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -28,6 +28,9 @@ DRILLING_STIFFNESS = 0.1
 #: weight of alternating drilling rotations (+ - + -); small, for curved shells have them without strain.
 ALTERNATING_STIFFNESS = 1e-3
 
+#: fading of the forces that tie drilling rotations to bending in the plane on curved surfaces.
+FADING = 4.0
+
 _GAUSS, _WEIGHT = np.polynomial.legendre.leggauss(3)
 
 
@@ -52,10 +55,26 @@ def bubbles(natural: FloatArray) -> FloatArray:
     return np.stack([across * (1.0 - s), along * (1.0 + r), across * (1.0 + s), along * (1.0 - r)], axis=-1)
 
 
-def membrane_parameters(geometry: FlatGeometry, section: ShellSection) -> tuple[FloatArray, FloatArray]:
-    """Force parameters β (n_e, 7, 12) and stiffness (n_e, 12, 12), with the drilling penalties."""
+def membrane_parameters(
+    geometry: FlatGeometry, section: ShellSection, turning: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Force parameters β (n_e, 7, 12) and stiffness (n_e, 12, 12), with the drilling penalties.
+
+    Facets of a curved surface see drilling rotations that don't strain the surface. Where it turns by the
+    angle δ from the element's plane to its sides, the two modes that ask φ to follow bending in the plane
+    fade by 1/(1 + 4 (δ √A/t)²), which leaves the five of Pian and Sumihara (1984).
+    """
     flexibility = np.linalg.inv(section.membrane)
-    beta, stiffness = _hybrid(geometry, membrane_modes, flexibility, _membrane_work(geometry))
+    work = _membrane_work(geometry)
+    beta, stiffness = _hybrid(geometry, membrane_modes, flexibility, work)
+    if np.any(turning):
+        beta_5, stiffness_5 = _hybrid(
+            geometry, lambda *at: membrane_modes(*at)[..., :5], flexibility, work[:, :5]
+        )
+        share = 1.0 / (1.0 + FADING * (turning / section.thickness) ** 2 * geometry.area)[:, None, None]
+        stiffness = share * stiffness + (1.0 - share) * stiffness_5
+        beta = share * beta
+        beta[:, :5] += (1.0 - share) * beta_5
     shear_area = section.membrane[:, 2, 2] * geometry.area
     alternating = np.tile([0.0, 0.0, 0.25, 0.0, 0.0, -0.25], 2)[None]
     penalties = (

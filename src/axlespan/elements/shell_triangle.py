@@ -22,6 +22,8 @@ FloatArray = npt.NDArray[np.float64]
 BASIC = 1.5
 #: least β_0, for Poisson's ratios near 1/2.
 LEAST_HIGHER_ORDER = 0.01
+#: fading of the higher-order stiffness on curved surfaces.
+FADING = 16.0
 # [corner, side, node]: natural strains that a hierarchical rotation gives, Felippa's β_1 ... β_9 permuted
 _CORNER_STRAINS = np.array(
     [
@@ -56,9 +58,10 @@ def bubbles(natural: FloatArray) -> FloatArray:
     return product
 
 
-def membrane_stiffness(geometry: FlatGeometry, section: ShellSection) -> FloatArray:
+def membrane_stiffness(geometry: FlatGeometry, section: ShellSection, turning: FloatArray) -> FloatArray:
     """Stiffness (n_e, 9, 9) per d.o.f. (u, v, φ of each node)."""
-    return _energy(membrane_strain(geometry, section, _MIDDLES), section.membrane, geometry.area)
+    strain = membrane_strain(geometry, section, turning, _MIDDLES)
+    return _energy(strain, section.membrane, geometry.area)
 
 
 def bending_stiffness(geometry: FlatGeometry, section: ShellSection) -> FloatArray:
@@ -67,8 +70,14 @@ def bending_stiffness(geometry: FlatGeometry, section: ShellSection) -> FloatArr
     return bending + _energy(shear_strain(geometry, section, _MIDDLES), section.shear, geometry.area)
 
 
-def membrane_strain(geometry: FlatGeometry, section: ShellSection, natural: FloatArray) -> FloatArray:
-    """ε_x, ε_y, γ_xy (n_e, n_point, 3, 9) at natural points: mean and higher-order part."""
+def membrane_strain(
+    geometry: FlatGeometry, section: ShellSection, turning: FloatArray, natural: FloatArray
+) -> FloatArray:
+    """ε_x, ε_y, γ_xy (n_e, n_point, 3, 9) at natural points: mean and higher-order part.
+
+    Facets of a curved surface see drilling rotations that don't strain the surface. Where it turns by the
+    angle δ from the element's plane to its sides, β_0 fades by 1/(1 + 16 (δ √(2A)/t)²).
+    """
     n_e, area = len(geometry.area), geometry.area[:, None, None]
     next_side, last_side = geometry.sides, np.roll(geometry.sides, 1, axis=1)
     away = np.roll(geometry.sides, -1, axis=1)  # the side opposite to each node
@@ -89,7 +98,8 @@ def membrane_strain(geometry: FlatGeometry, section: ShellSection, natural: Floa
         axis=1,
     )
     natural_strain = np.einsum("pc,csn->psn", linear(natural)[0], _CORNER_STRAINS)
-    scale = 1.5 * np.sqrt(higher_order_factor(section))[:, None, None] / (6.0 * area)
+    fading = 1.0 + FADING * (turning / section.thickness) ** 2 * 2.0 * geometry.area
+    scale = 1.5 * np.sqrt(higher_order_factor(section) / fading)[:, None, None] / (6.0 * area)
     higher = (scale * cartesian)[:, None] @ natural_strain @ above.reshape(n_e, 1, 3, 9)
     return mean.reshape(n_e, 1, 3, 9) / (2.0 * area[..., None]) + higher
 

@@ -14,11 +14,11 @@ import numpy.typing as npt
 
 from axlespan.elements import shell_quadrilateral, shell_triangle
 from axlespan.elements.shell_checks import ShapeFaults, check_geometry
-from axlespan.elements.shell_geometry import ShellKind, flatten, link_matrices, prepared
+from axlespan.elements.shell_geometry import ShellKind, flatten, link_matrices, per_element, prepared
 from axlespan.elements.shell_interpolation import interpolation
 from axlespan.elements.shell_loads import body_force, mass, surface_pressure
 from axlespan.elements.shell_material import ShellMaterial, section
-from axlespan.elements.shell_normals import side_normals
+from axlespan.elements.shell_turning import surface_turning
 from axlespan.errors import InputError
 
 FloatArray = npt.NDArray[np.float64]
@@ -34,9 +34,9 @@ __all__ = [
     "interpolation",
     "mass",
     "resultants",
-    "side_normals",
     "stiffness",
     "surface_pressure",
+    "surface_turning",
 ]
 
 _GAUSS = 1.0 / np.sqrt(3.0)
@@ -87,7 +87,7 @@ def stiffness(
     material: ShellMaterial,
     thickness: npt.ArrayLike,
     offset: npt.ArrayLike = 0.0,
-    side_normals: FloatArray | None = None,
+    turning: npt.ArrayLike = 0.0,
 ) -> FloatArray:
     """Stiffness matrices (n_e, 6 n_node, 6 n_node) [N/m, N, N m].
 
@@ -101,10 +101,10 @@ def stiffness(
         t > 0 [m].
     offset : float or array (n_e,)
         From the reference surface to the mid-surface, along the element's normal [m].
-    side_normals : array (n_e, n_node, 3), optional
-        Normals of a curved surface along the sides, from `axlespan.elements.shell_normals.side_normals`;
-        without them every element bends and stretches as a facet, which is stiffer on coarse meshes of
-        doubly curved shells.
+    turning : float or array (n_e,)
+        Angle by which a curved surface turns from the element's plane to its sides, from
+        `surface_turning` [rad]. With 0, right for plates and folded plates, coarse meshes of doubly curved
+        shells are too stiff, triangles above all.
 
     Raises
     ------
@@ -113,12 +113,13 @@ def stiffness(
     """
     geometry, t, reach = prepared(kind, coordinates, thickness, offset)
     cut = section(material, geometry.axes, geometry.first_side, t)
-    to_membrane, to_bending = link_matrices(geometry, reach, side_normals)
+    delta = per_element(turning, len(t), "turning")
+    to_membrane, to_bending = link_matrices(geometry, reach)
     if kind == "shell4":
-        membrane = shell_quadrilateral.membrane_parameters(geometry, cut)[1]
+        membrane = shell_quadrilateral.membrane_parameters(geometry, cut, delta)[1]
         bending = shell_quadrilateral.bending_parameters(geometry, cut)[1]
     else:
-        membrane = shell_triangle.membrane_stiffness(geometry, cut)
+        membrane = shell_triangle.membrane_stiffness(geometry, cut, delta)
         bending = shell_triangle.bending_stiffness(geometry, cut)
     return _congruent(to_membrane, membrane) + _congruent(to_bending, bending)
 
@@ -130,14 +131,14 @@ def resultants(
     thickness: npt.ArrayLike,
     displacements: npt.ArrayLike,
     offset: npt.ArrayLike = 0.0,
-    side_normals: FloatArray | None = None,
+    turning: npt.ArrayLike = 0.0,
     natural: npt.ArrayLike | None = None,
 ) -> ShellResultants:
     """Normal forces, moments and shear forces at points of the elements.
 
     Parameters
     ----------
-    kind, coordinates, material, thickness, offset, side_normals
+    kind, coordinates, material, thickness, offset, turning
         As in `stiffness`.
     displacements : array (n_e, 6 n_node)
         Nodal displacements [m, rad].
@@ -147,16 +148,17 @@ def resultants(
     """
     geometry, t, reach = prepared(kind, coordinates, thickness, offset)
     cut = section(material, geometry.axes, geometry.first_side, t)
+    delta = per_element(turning, len(t), "turning")
     d = np.asarray(displacements, dtype=float)
     if d.shape != (len(t), 6 * geometry.node_count):
         raise InputError(
             f"must have the shape {(len(t), 6 * geometry.node_count)}", field="displacements", value=d.shape
         )
-    in_plane, across = (matrix @ d[:, :, None] for matrix in link_matrices(geometry, reach, side_normals))
+    in_plane, across = (matrix @ d[:, :, None] for matrix in link_matrices(geometry, reach))
     where = _DEFAULT_POINTS[kind] if natural is None else np.atleast_2d(np.asarray(natural, dtype=float))
     if kind == "shell4":
         at = shell_quadrilateral.bilinear(where)[0] @ geometry.plane
-        n_beta = shell_quadrilateral.membrane_parameters(geometry, cut)[0] @ in_plane
+        n_beta = shell_quadrilateral.membrane_parameters(geometry, cut, delta)[0] @ in_plane
         m_beta = shell_quadrilateral.bending_parameters(geometry, cut)[0] @ across
         n = (shell_quadrilateral.membrane_modes(geometry, at) @ n_beta[:, None])[..., 0]
         mq = (shell_quadrilateral.bending_modes(geometry, at) @ m_beta[:, None])[..., 0]

@@ -18,11 +18,15 @@ IntArray = npt.NDArray[np.int64]
 _ENERGY_SAMPLES = 128
 
 
+# Smallest displacement [m] that a compatibility residual is related to.
+_SMALLEST = 1e-6
+
+
 class CompatibilityMonitor:
     """Largest |u_X - E u - r| relative to the largest displacement of the wheels (N12 (27)), now and then."""
 
     def __init__(self) -> None:
-        self._worst, self._scale = 0.0, 0.0
+        self._worst, self._scale = 0.0, _SMALLEST
 
     def look(self, wheels: FloatArray, line: FloatArray) -> None:
         """Compare wheels with the line under them (n_coupled,) [m]."""
@@ -33,7 +37,7 @@ class CompatibilityMonitor:
     @property
     def residual(self) -> float:
         """Relative residual [-]."""
-        return self._worst / self._scale if self._scale > 0.0 else self._worst
+        return self._worst / self._scale
 
 
 class BalanceMonitor:

@@ -82,6 +82,7 @@ def plan_for(crossing: Crossing, settings: Settings) -> Plan:
         If a wheel's line is unknown, no wheel is ever on the structure, or a sensor is off it.
     """
     crossing.structure.require_stable()
+    _check_damping(crossing.structure)
     system, line = crossing.structure.system, crossing.structure.line()
     moving = np.array(
         [
@@ -106,6 +107,18 @@ def plan_for(crossing: Crossing, settings: Settings) -> Plan:
     _check_reach(plan)
     _check_sensors(crossing.structure, settings)
     return plan
+
+
+def _check_damping(structure: Structure) -> None:
+    """Modal damping acts on velocities relative to fixed supports."""
+    system = structure.system
+    if system.modal_damping is not None and not all(isinstance(motion, Constant) for motion in system.motions):
+        raise InputError(
+            "acts on the motion relative to supports that stand still, but a support moves",
+            field="damping",
+            value="modal",
+            fix="Use Rayleigh damping",
+        )
 
 
 def matrices_of(system: System) -> Matrices:

@@ -72,10 +72,11 @@ def _active(model: Model) -> npt.NDArray[np.bool_]:
         active[np.unique(part.nodes)[:, None], component_indices(part.components)] = True
     waiting = list(model.ties)
     while True:  # masters of active slaves are active; a master may be a slave itself
-        ready = [tie for tie in waiting if active[tie.slave[0], COMPONENTS.index(tie.slave[1])]]
+        is_ready = [bool(active[tie.slave[0], COMPONENTS.index(tie.slave[1])]) for tie in waiting]
+        ready = [tie for tie, now in zip(waiting, is_ready, strict=True) if now]
         if not ready:
             return active
-        waiting = [tie for tie in waiting if tie not in ready]
+        waiting = [tie for tie, now in zip(waiting, is_ready, strict=True) if not now]
         for tie in ready:
             for node, component, _ in tie.masters:
                 active[node, COMPONENTS.index(component)] = True

@@ -48,6 +48,8 @@ class Modal:
         require_positive(self.ratio, "damping.ratio", zero=True)
         if self.ratio >= 1.0:
             raise InputError("must be below 1", field="damping.ratio", value=self.ratio, fix="1 % is 0.01")
+        if self.modes is not None and self.modes < 1:
+            raise InputError("must be at least 1", field="damping.modes", value=self.modes)
 
 
 Damping = Rayleigh | Modal

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -22,6 +22,14 @@ from axlespan.model.shell_parts import ShellPart
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
+
+# Local nodes of a plane element in the opposite order, from the same first corner.
+_MIRRORED = {
+    "tri3": [0, 2, 1],
+    "tri6": [0, 2, 1, 5, 4, 3],
+    "quad4": [0, 3, 2, 1],
+    "quad8": [0, 3, 2, 1, 7, 6, 5, 4],
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +86,8 @@ class Bars:
 
 #: What the elements of a set are made of.
 Section = Solids | Planes | Shells | Beams | Bars
-_SHAPES = {
+_MeshPart = SolidPart | PlanePart | ShellPart | BeamPart | BarPart
+_SHAPES: Mapping[type, tuple[str, ...]] = {
     Solids: ("hex8", "hex20", "tet4", "tet10", "wedge6"),
     Planes: ("quad4", "quad8", "tri3", "tri6"),
     Shells: ("quad4", "tri3"),
@@ -100,7 +109,7 @@ class _Block:
 def parts_from_mesh(
     mesh: Mesh, sections: Mapping[str, Section], *, first_node: int = 0, in_plane: bool = False
 ) -> tuple[Part, ...]:
-    """Parts of a model, one for each element set (for each kind, where a set has several).
+    """Parts of a model, one for each element set (one for each kind, where a set has several).
 
     Parameters
     ----------
@@ -121,87 +130,116 @@ def parts_from_mesh(
         elements of the highest dimension have none.
     """
     taken = [np.zeros(len(block), dtype=bool) for block in mesh.blocks]
-    parts: list[Part] = []
+    parts: list[_MeshPart] = []
     for name, section in sections.items():
-        if isinstance(section, Planes) != in_plane and isinstance(section, (Solids, Planes, Shells)):
+        if in_plane != isinstance(section, Planes) and not isinstance(section, (Beams, Bars)):
             fix = "Planes go with a plane model, solids and shells with one in space"
             raise InputError("does not fit the model", field=f"section of '{name}'", fix=fix)
-        blocks = list(_blocks(mesh, name, section, taken))
-        parts += _parts(section, blocks, mesh, name, in_plane)
+        parts += _parts(section, _blocks(mesh, name, section, taken), mesh.points, name, in_plane)
     _check_all_taken(mesh, taken)
-    return tuple(_moved(part, first_node) for part in parts)
+    return tuple(replace(part, nodes=part.nodes + first_node) for part in parts)
 
 
-def _blocks(
-    mesh: Mesh, name: str, section: Section, taken: list[npt.NDArray[np.bool_]]
-) -> Iterator[_Block]:
-    chosen = [(block, elements) for block, elements in mesh.elements_of_set(name) if len(elements)]
-    if not chosen:
-        raise InputError("has no elements", field="element set", value=name)
-    several = len({mesh.blocks[block].kind for block, _ in chosen}) < len(chosen)
-    names = [name] * len(chosen)
-    if len(chosen) > 1:
-        names = [f"{name}/{mesh.blocks[block].kind}" for block, _ in chosen]
-    if several:  # blocks of the same kind
-        names = [f"{own}/{i + 1}" for i, own in enumerate(names)]
-    for own, (block, elements) in zip(names, chosen, strict=True):
-        cells = mesh.blocks[block]
-        if cells.kind not in _SHAPES[type(section)]:
+def _blocks(mesh: Mesh, name: str, section: Section, taken: list[npt.NDArray[np.bool_]]) -> list[_Block]:
+    by_kind: dict[str, list[tuple[IntArray, IntArray]]] = {}
+    for number, elements in mesh.elements_of_set(name):
+        cells, fitting = mesh.blocks[number], _SHAPES[type(section)]
+        if cells.kind not in fitting:
             raise InputError(
                 f"can't be {type(section).__name__.lower()}",
                 field=f"elements of '{name}'",
                 value=cells.kind,
-                fix=f"Those are {', '.join(_SHAPES[type(section)])}",
+                fix=f"Those are {', '.join(fitting)}",
             )
-        twice = elements[taken[block][elements]]
+        twice = elements[taken[number][elements]]
         if len(twice):
             raise InputError(
                 "has two sections", field=f"element of '{name}'", value=int(cells.labels[twice[0]])
             )
-        taken[block][elements] = True
-        yield _Block(own, cells.kind, cells.nodes[elements], cells.labels[elements])
+        taken[number][elements] = True
+        if len(elements):
+            by_kind.setdefault(cells.kind, []).append((cells.nodes[elements], cells.labels[elements]))
+    if not by_kind:
+        raise InputError("has no elements", field="element set", value=name)
+    return [
+        _Block(
+            name if len(by_kind) == 1 else f"{name}/{kind}",
+            kind,
+            *(np.concatenate(arrays) for arrays in zip(*found, strict=True)),
+        )
+        for kind, found in by_kind.items()
+    ]
 
 
-def _parts(section: Section, blocks: list[_Block], mesh: Mesh, name: str, in_plane: bool) -> Iterator[Part]:
+def _check_all_taken(mesh: Mesh, taken: list[npt.NDArray[np.bool_]]) -> None:
+    """Elements of the highest dimension without a section would be a hole in the structure."""
+    highest = max((CELL_KINDS[block.kind].dimension for block in mesh.blocks), default=0)
+    for number, block in enumerate(mesh.blocks):
+        left = np.flatnonzero(~taken[number])
+        if CELL_KINDS[block.kind].dimension < highest or not len(left):
+            continue
+        names = [
+            name
+            for name, parts in mesh.element_sets.items()
+            if any(own == number and left[0] in elements for own, elements in parts)
+        ]
+        raise InputError(
+            f"must have a section, as {len(left)} more {block.kind} must"
+            if len(left) > 1
+            else "must have a section",
+            field="element",
+            value=int(block.labels[left[0]]),
+            fix=f"It is in the set '{names[0]}'" if names else "It is in no element set: put it in one",
+        )
+
+
+def _parts(
+    section: Section, blocks: list[_Block], points: FloatArray, name: str, in_plane: bool
+) -> list[_MeshPart]:
     if isinstance(section, Shells):
-        yield from _shells(section, blocks, mesh, name)
-        return
-    for block in blocks:
-        if isinstance(section, Solids):
-            yield SolidPart.of(
-                block.name,
-                block.kind,
-                block.nodes,
-                section.material,
-                elasticity=section.elasticity,
-                formulation=section.formulation,
-                lumped_mass=section.lumped_mass,
-                labels=block.labels,
-            )
-        elif isinstance(section, Planes):
-            yield PlanePart.of(
-                block.name,
-                block.kind,
-                _counterclockwise(block, mesh.points),
-                section.material,
-                thickness=section.thickness,
-                state=section.state,
-                elasticity=section.elasticity,
-                formulation=section.formulation,
-                lumped_mass=section.lumped_mass,
-                labels=block.labels,
-            )
-        elif isinstance(section, Beams):
-            yield _beams(section, block, in_plane)
-        elif isinstance(section, Bars):
-            yield _bars(section, block, in_plane)
+        return list(_shells(section, blocks, points, name))
+    if isinstance(section, Beams):
+        return [_beams(section, block, in_plane) for block in blocks]
+    if isinstance(section, Bars):
+        return [_bars(section, block, in_plane) for block in blocks]
+    if isinstance(section, Planes):
+        return [_planes(section, block, points) for block in blocks]
+    return [
+        SolidPart.of(
+            block.name,
+            block.kind,
+            block.nodes,
+            section.material,
+            elasticity=section.elasticity,
+            formulation=section.formulation,
+            lumped_mass=section.lumped_mass,
+            labels=block.labels,
+        )
+        for block in blocks
+    ]
 
 
-def _shells(section: Shells, blocks: list[_Block], mesh: Mesh, name: str) -> Iterator[Part]:
-    if section.offset != 0.0:
-        _check_oriented(blocks, name)
-    for block in blocks:
-        part = ShellPart.of(
+def _planes(section: Planes, block: _Block, points: FloatArray) -> PlanePart:
+    part = PlanePart.of(
+        block.name,
+        block.kind,
+        block.nodes,
+        section.material,
+        thickness=section.thickness,
+        state=section.state,
+        elasticity=section.elasticity,
+        formulation=section.formulation,
+        lumped_mass=section.lumped_mass,
+        labels=block.labels,
+    )
+    if np.all(plane.areas(part.element, part.coordinates(points)) < 0.0):  # drawn seen from the other side
+        return replace(part, nodes=part.nodes[:, _MIRRORED[block.kind]])
+    return part
+
+
+def _shells(section: Shells, blocks: list[_Block], points: FloatArray, name: str) -> Iterator[ShellPart]:
+    parts = [
+        ShellPart.of(
             block.name,
             block.kind,
             block.nodes,
@@ -212,7 +250,34 @@ def _shells(section: Shells, blocks: list[_Block], mesh: Mesh, name: str) -> Ite
             lumped_mass=section.lumped_mass,
             labels=block.labels,
         )
-        yield part if not section.curved else part.with_curvature(mesh.points)
+        for block in blocks
+    ]
+    if section.offset != 0.0:
+        _check_oriented(blocks, name)
+    if not section.curved:
+        return iter(parts)
+    normals = side_normals(points, {part.shell_kind: part.nodes for part in parts})
+    return (replace(part, side_normals=normals[part.shell_kind]) for part in parts)
+
+
+def _check_oriented(blocks: list[_Block], name: str) -> None:
+    """Neighbors run along their common side in opposite directions where their normals agree."""
+    sides = [
+        np.stack([block.nodes, np.roll(block.nodes, -1, axis=1)], axis=2).reshape(-1, 2) for block in blocks
+    ]
+    ends = np.concatenate(sides)
+    owners = np.concatenate([np.repeat(block.labels, block.nodes.shape[1]) for block in blocks])
+    _, group, count = np.unique(np.sort(ends, axis=1), axis=0, return_inverse=True, return_counts=True)
+    direction = np.bincount(group.ravel(), np.where(ends[:, 0] < ends[:, 1], 1.0, -1.0))
+    wrong = np.flatnonzero((count == 2) & (direction != 0.0))
+    if len(wrong):
+        pair = owners[group.ravel() == wrong[0]]
+        raise InputError(
+            "must have their normals on the same side, for the offset",
+            field=f"elements of '{name}'",
+            value=", ".join(str(label) for label in pair.tolist()),
+            fix="Reverse the order of the nodes of one of them",
+        )
 
 
 def _beams(section: Beams, block: _Block, in_plane: bool) -> BeamPart:

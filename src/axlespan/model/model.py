@@ -12,7 +12,9 @@ from axlespan.elements.beam import BeamProperties
 from axlespan.errors import InputError
 from axlespan.model.damping import Damping
 from axlespan.model.dofs import COMPONENTS, component_indices, nearest
+from axlespan.model.from_mesh import Section, parts_from_mesh
 from axlespan.model.materials import require_positive
+from axlespan.model.mesh import Mesh
 from axlespan.model.motions import Constant, Motion
 from axlespan.model.parts import BarPart, BeamPart, MassPart, Part, SpringPart
 
@@ -65,6 +67,7 @@ class Model:
     ties: tuple[Tie, ...] = ()
     loads: tuple[NodalLoad, ...] = ()
     damping: Damping | None = None
+    node_sets: Mapping[str, IntArray] = field(default_factory=dict)  # from meshes
 
     # --- nodes -------------------------------------------------------------------------------
 
@@ -120,6 +123,22 @@ class Model:
             )
         return int(reference)
 
+    def nodes_of(self, reference: str | int | Sequence[int | str] | IntArray) -> IntArray:
+        """Indices of the nodes of a set, or of one or several nodes.
+
+        Raises
+        ------
+        InputError
+            If there is no such set or node.
+        """
+        if isinstance(reference, str) and reference in self.node_sets:
+            return self.node_sets[reference]
+        if isinstance(reference, str) and reference not in self.node_names and self.node_sets:
+            if not (reference[:1] == "n" and reference[1:].isdigit()):
+                raise nearest(reference, [*self.node_sets, *self.node_names], "node or set of nodes")
+        items = [reference] if isinstance(reference, (str, int, np.integer)) else list(reference)
+        return np.array([self.node(item) for item in items], dtype=np.int64)
+
     def node_label(self, index: int) -> str:
         """Name of a node; ``n1``, ``n2``, … for those without one."""
         for name, i in self.node_names.items():
@@ -147,6 +166,24 @@ class Model:
             )
         return replace(self, parts=(*self.parts, part))
 
+    def with_mesh(self, mesh: Mesh, sections: Mapping[str, Section]) -> Model:
+        """Append the nodes of a mesh, its node sets, and parts for its element sets.
+
+        Parameters
+        ----------
+        mesh : Mesh
+            Element sets count as sets of their nodes too.
+        sections : mapping of str to Section
+            What each element set is made of, see :mod:`axlespan.model.from_mesh`.
+        """
+        first = len(self.points)
+        parts = parts_from_mesh(mesh, sections, first_node=first, in_plane=self.plane)
+        sets = dict(self.node_sets)
+        for name in {**mesh.element_sets, **mesh.node_sets}:
+            own = mesh.nodes_of_set(name) + first
+            sets[name] = np.concatenate([sets[name], own]) if name in sets else own
+        return replace(self.with_nodes(mesh.points), parts=(*self.parts, *parts), node_sets=sets)
+
     def with_beams(
         self,
         nodes: npt.ArrayLike,
@@ -154,8 +191,9 @@ class Model:
         *,
         name: str = "beams",
         up: npt.ArrayLike | None = None,
+        offset: npt.ArrayLike | None = None,
     ) -> Model:
-        """Append beams between pairs of nodes (n_element, 2).
+        """Append beams between pairs of nodes (n_element, 2), or beside them by an offset (3,) [m].
 
         In a plane model, beams without axial stiffness have no d.o.f. along x.
         """
@@ -163,7 +201,8 @@ class Model:
         if self.plane:
             components = _PLANE if np.any(np.asarray(properties.axial_stiffness) > 0.0) else ("z", "ry")
         direction = None if up is None else np.asarray(up, float)
-        return self.with_part(BeamPart(name, _pairs(nodes), properties, components, direction))
+        arm = None if offset is None else np.asarray(offset, float)
+        return self.with_part(BeamPart(name, _pairs(nodes), properties, components, direction, arm))
 
     def with_bars(
         self,
@@ -240,16 +279,19 @@ class Model:
         self, slave: tuple[int | str, str], masters: Sequence[tuple[int | str, str, float]]
     ) -> Model:
         """Append a tie: the slave d.o.f. (node, component) = Σ coefficient · (node, component)."""
+        return replace(self, ties=(*self.ties, self._tie(slave, masters)))
+
+    def _tie(self, slave: tuple[int | str, str], masters: Sequence[tuple[int | str, str, float]]) -> Tie:
         resolved = tuple((self.node(node), component, float(factor)) for node, component, factor in masters)
         component_indices((slave[1], *(component for _, component, _ in resolved)))
-        return replace(self, ties=(*self.ties, Tie((self.node(slave[0]), slave[1]), resolved)))
+        return Tie((self.node(slave[0]), slave[1]), resolved)
 
     def with_rigid_link(
         self, master: int | str, slaves: Sequence[int | str], components: Sequence[str] | None = None
     ) -> Model:
         """Bind nodes to a master node as one rigid body (small rotations): u + θ × arm."""
         chosen = tuple(components or (_PLANE if self.plane else COMPONENTS))
-        model, head = self, self.node(master)
+        ties, head = list(self.ties), self.node(master)
         for reference in slaves:
             tail = self.node(reference)
             x, y, z = self.points[tail] - self.points[head]
@@ -261,8 +303,8 @@ class Model:
             for component in chosen:
                 terms = [(head, component, 1.0)]
                 terms += [(head, rotation, arm) for rotation, arm in lever.get(component, ()) if arm != 0.0]
-                model = model.with_tie((tail, component), terms)
-        return model
+                ties.append(self._tie((tail, component), terms))
+        return replace(self, ties=tuple(ties))
 
     def with_support(
         self,
@@ -279,22 +321,56 @@ class Model:
         Elastic components stand on a ground node of their own, so that their reactions are reported
         too; a motion of an elastic component moves that ground.
         """
-        index, label = self.node(node), name or self.node_label(self.node(node))
-        moved, elastic = dict(motion or {}), {*(stiffness or {}), *(damping or {})}
+        index = self.node(node)
+        return self.with_supports(
+            [index],
+            fixed,
+            stiffness=stiffness,
+            damping=damping,
+            motion=motion,
+            name=name or self.node_label(index),
+        )
+
+    def with_supports(
+        self,
+        nodes: str | Sequence[int | str] | IntArray,
+        fixed: Sequence[str] = (),
+        *,
+        stiffness: Mapping[str, float] | None = None,
+        damping: Mapping[str, float] | None = None,
+        motion: Mapping[str, Motion] | None = None,
+        name: str | None = None,
+    ) -> Model:
+        """Support each node of a set, or of several, alike; see :meth:`with_support`.
+
+        The supports of several nodes are called ``name.node``; the name is that of the set by default.
+        """
+        indices, moved = self.nodes_of(nodes), dict(motion or {})
+        elastic = {*(stiffness or {}), *(damping or {})}
+        if not len(indices):
+            raise InputError("must have at least one node", field="support", value=name or str(nodes))
+        title = name or (nodes if isinstance(nodes, str) else "")
+        if title and len(indices) == 1:
+            labels = [title]
+        else:
+            every = self.node_labels()
+            labels = [f"{title}.{every[i]}" if title else every[i] for i in indices]
         component_indices((*fixed, *moved, *elastic))
-        held = [*fixed, *elastic] if not moved else [*fixed, *(set(elastic) | set(moved))]
+        held = [*fixed, *elastic]
         if len(set(held)) < len(held):
             twice = next(part for part in held if held.count(part) > 1)
-            raise InputError("is held in two ways at once", field="support", value=f"{label}.{twice}")
-        model, ground = self, index
+            raise InputError("is held in two ways at once", field="support", value=f"{labels[0]}.{twice}")
+        model, grounds = self, indices
         if elastic:
-            model = model.with_nodes(self.points[index][None], [f"{label}:ground"])
-            ground = len(model.points) - 1
-            model = model.with_springs([[ground, index]], stiffness, damping, name=f"support {label}")
+            model = model.with_nodes(self.points[indices], [f"{label}:ground" for label in labels])
+            grounds = np.arange(len(self.points), len(model.points))
+            pairs = np.column_stack([grounds, indices])
+            model = model.with_springs(pairs, stiffness, damping, name=f"support {title or labels[0]}")
         entries = [
             Support(
                 f"{label}.{part}", ground if part in elastic else index, part, moved.get(part, Constant(0.0))
             )
+            for label, ground, index in zip(labels, grounds.tolist(), indices.tolist(), strict=True)
             for part in COMPONENTS
             if part in {*fixed, *moved, *elastic}
         ]
@@ -305,6 +381,8 @@ class Model:
                 raise InputError("is already the name of a support", field="support", value=entry.name)
             if (entry.node, entry.component) in taken:
                 raise InputError("is supported twice", field="support", value=entry.name)
+            taken.add((entry.node, entry.component))
+            named.add(entry.name)
         return replace(model, supports=(*model.supports, *entries))
 
     def with_load(

@@ -179,9 +179,9 @@ def _averaged(path: PolynomialPath, length: float) -> PolynomialPath:
     n_local = max(len(dofs) for dofs, _ in rows)
     all_dofs = np.full((len(rows), n_local), rows[0][0][0], dtype=np.int64)
     coefficients = np.zeros((len(rows), n_local, n_power + 1))
-    for i, (dofs, terms) in enumerate(rows):
-        all_dofs[i, : len(dofs)] = dofs
-        coefficients[i, : len(dofs)] = terms
+    for i, (own, polynomials) in enumerate(rows):
+        all_dofs[i, : len(own)] = own
+        coefficients[i, : len(own)] = polynomials
     n = int(path.dofs.max()) + 1
     return _unstack(edges, _stack(all_dofs, coefficients, n), len(rows), n_power + 1)
 

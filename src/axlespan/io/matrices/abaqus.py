@@ -20,7 +20,7 @@ import numpy.typing as npt
 from scipy.sparse import csr_array, tril
 
 from axlespan.errors import InputError
-from axlespan.io.lines import Lines, whole
+from axlespan.io.lines import Lines, load_bytes, text_of, whole
 from axlespan.io.matrices.names import DofMap
 from axlespan.io.matrices.triplets import check_size, square
 from axlespan.model.dofs import COMPONENTS
@@ -84,12 +84,11 @@ def read_abaqus_entries(path: str | PathLike[str], size: int | None = None) -> N
 
 def _data(path: str | PathLike[str]) -> Lines:
     """Data lines; comments and keyword lines, which begin with *, are left out."""
-    every = Lines.of_file(path)
-    every.lines = [
-        line.upper().replace("D", "E") if "D" in line or "d" in line else line for line in every.lines
-    ]
-    kept = [i for i, line in enumerate(every.lines) if line.lstrip()[0] != "*"]
-    if len(kept) < len(every.lines):
+    file = str(path)
+    text = text_of(load_bytes(path), file).upper().replace("D", "E")  # Fortran's double exponent
+    every = Lines(file, text.split("\n"))
+    if "*" in text:
+        kept = [i for i, line in enumerate(every.lines) if line.lstrip()[0] != "*"]
         every.lines, every.numbers = [every.lines[i] for i in kept], every.numbers[kept]
     if not every.lines:
         raise every.error("has no entries")
@@ -102,7 +101,8 @@ def matrices_of(parts: Sequence[NodalEntries]) -> tuple[DofMap, list[csr_array]]
     Nodes inside elements come last.
     """
     pairs = np.concatenate([np.concatenate([part.rows, part.columns]) for part in parts])
-    distinct, member = np.unique(pairs, axis=0, return_inverse=True)
+    keys, member = np.unique(pairs[:, 0] * 1000 + pairs[:, 1], return_inverse=True)  # d.o.f. are below 1000
+    distinct = np.column_stack(np.divmod(keys, 1000))
     order = np.argsort(distinct[:, 0] < 0, kind="stable")
     rank = np.empty(len(order), dtype=np.int64)
     rank[order] = np.arange(len(order))

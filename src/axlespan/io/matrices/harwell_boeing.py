@@ -60,6 +60,7 @@ def read_harwell_boeing(path: str | PathLike[str]) -> HarwellBoeing:
     """
     file = str(path)
     first, _, rest = text_of(load_bytes(path), file).partition("\n")
+    rest = rest.upper().replace("D", "E")  # Fortran's double exponent
     lines = Lines(file, [first if first.strip() else "untitled", *rest.split("\n")])
     title = lines.next("title")[:72].strip()
     cards = lines.integers("line counts: total, pointers, indices, values, right-hand sides")
@@ -134,20 +135,21 @@ def _numbers(lines: Lines, count: int, cards: int, field: _Field, what: str) -> 
         raise lines.error(rule, position=1)
     start = lines.position
     chunk, numbers = lines.take(cards, what)
-    chunk = [line.upper().replace("D", "E") for line in chunk]
-    rows = [line.split() for line in chunk] if field.repeat > 1 else [[line] for line in chunk]
-    if sum(map(len, rows)) != count:  # numbers that touch each other are told apart by their columns
+    rows = [line.split() for line in chunk] if field.repeat > 1 else []
+    if (
+        field.repeat > 1 and sum(map(len, rows)) != count
+    ):  # numbers that touch are told apart by their columns
         ends = [min(len(line.rstrip()), field.width * field.repeat) for line in chunk]
         rows = [
             [line[i : i + field.width] for i in range(0, end, field.width)]
             for line, end in zip(chunk, ends, strict=True)
         ]
-    words = [word for row in rows for word in row]
+    words = [word for row in rows for word in row] if rows else chunk
+    owner = np.repeat(np.arange(cards), [len(row) for row in rows]) if rows else np.arange(cards)
     values = table_of(words, 1)
     if values is None:
         words = [_BARE_EXPONENT.sub(r"E\1", word) for word in words]
         values = table_of(words, 1)
-    owner = np.repeat(np.arange(cards), [len(row) for row in rows])
     if values is None:
         bad = next(i for i, word in enumerate(words) if not word.strip() or table_of([word], 1) is None)
         raise lines.error(f"must be numbers ({what})", position=start + int(owner[bad]))

@@ -121,7 +121,7 @@ def read_modal(
     table = None if coordinates is None else read_coordinates(coordinates)
     place = Place(str(frequencies))
     try:
-        if load_bytes(frequencies).startswith(b"PK"):
+        if load_bytes(frequencies).startswith(b"PK") or Path(frequencies).suffix == ".npz":
             return _of_archive(load_arrays(frequencies, _FIX), table)
         if shapes is None:
             raise InputError(
