@@ -122,6 +122,11 @@ def test_quadratic_elements_run_over_lines_and_keep_vtks_order(write, kind, name
     np.testing.assert_array_equal(mesh.points[block.nodes[0, corners:]], middles)
 
 
+def test_what_says_nothing_of_the_mesh_is_passed_over(write):
+    text = FLAT.replace("*NODE, NSET=ALL", "*SYSTEM\n*NODE, NSET=ALL")
+    np.testing.assert_array_equal(read_mesh(write(text)).points, read_mesh(write(FLAT)).points)
+
+
 def test_the_middle_node_of_a_line_goes_last(write):
     mesh = read_mesh(write("*NODE\n1, 0.\n2, 1.\n3, 2.\n*ELEMENT, TYPE=B32\n1, 1, 2, 3\n"))
     assert mesh.points[mesh.blocks[0].nodes[0], 0].tolist() == [0.0, 2.0, 1.0]
@@ -278,6 +283,12 @@ FAULTS = [
         r"\*INCLUDE: is not supported. Put the",
     ),
     ("*NODE, NSET=ALL", "*NODE, INPUT=x.inp", "*NODE, INPUT=x.inp", "with INPUT is not supported"),
+    (
+        "*NODE, NSET=ALL",
+        "*SYSTEM\n0., 0., 1.\n*NODE, NSET=ALL",
+        "*SYSTEM",
+        r"\*SYSTEM: is not supported. Write the",
+    ),
     ("*NODE, NSET=ALL", "*NODE, SYSTEM=C", "*NODE, SYSTEM=C", r"must be R \(rectangular\)"),
     ("*HEADING\n", "1, 2\n*HEADING\n", "1, 2", "must begin with a keyword"),
     (

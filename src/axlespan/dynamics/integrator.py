@@ -131,6 +131,7 @@ class Integrator:
         self.factor = self.factor_of(self.effective, solver)
         self.K = _operand(matrices.K)
         self.C = None if matrices.C is None else _operand(matrices.C)
+        self.dense = self._dense() if 0 < matrices.size <= _DENSE_UP_TO else None
 
     @property
     def size(self) -> int:
@@ -143,6 +144,16 @@ class Integrator:
         if m.C is not None:
             effective = effective + (self.weight_c * self.v_from_a) * m.C
         return sp.csr_array(effective)
+
+    def _dense(self) -> FloatArray:
+        """[-A⁻¹ K, -A⁻¹ C, A⁻¹] (n, 2n or 3n) of a small body; the second block only where there is damping."""
+        blocks = [-self.factor.solve(np.ascontiguousarray(self.matrices.K.toarray()))]
+        if self.has_damping:
+            blocks.append(
+                -self.factor.solve(np.ascontiguousarray(self.matrices.damping_force(np.eye(self.size))))
+            )
+        blocks.append(self.factor.solve(np.eye(self.size)))
+        return np.ascontiguousarray(np.hstack(blocks))
 
     def factor_of(self, effective: sp.csr_array, solver: str = "auto") -> Factor:
         """Factor of an effective matrix (n, n), the low-rank damping included."""
@@ -166,7 +177,8 @@ class Integrator:
         0.9999000099990001
         """
         stepper = Stepper(self, state.copy())
-        stepper.predict(self.weight_c * force_current + self.weight_p * force_previous)
+        stepper.force[...] = self.weight_c * force_current + self.weight_p * force_previous
+        stepper.predict()
         stepper.finish()
         return stepper.state
 
@@ -184,38 +196,48 @@ class Integrator:
 class Stepper:
     """A body on its way: a state, and the arrays that a step needs, made once.
 
-    A step is ``predict``, as if the given force were all; ``add`` for accelerations that contact forces bring;
-    ``finish``.
+    A step is ``predict``, as if the forces in ``force`` were all; ``add`` for accelerations that contact forces
+    bring; ``finish``. Small bodies hold A⁻¹, A⁻¹ K and A⁻¹ C as dense matrices, side by side, so that a
+    prediction is one product; large ones multiply with K and C and solve with the factor.
     """
 
     def __init__(self, integrator: Integrator, state: State) -> None:
         self.integrator, self.state = integrator, state
         shape = state.values.shape[1:]
-        self._rows = 4 if integrator.has_damping else 3
-        self._predicted = np.empty((self._rows, *shape))
-        self._flat_predicted = self._predicted.reshape(self._rows, -1)
-        self._matrix = np.ascontiguousarray(integrator.prediction[: self._rows])
+        n_row = 4 if integrator.has_damping else 3
+        # Rows: ũ, ṽ, (1+α) ũ - α u, (1+α) ṽ - α u̇ where there is damping, force.
+        self._work = np.zeros((n_row + 1, *shape))
+        self._rows = self._work[:n_row].reshape(n_row, -1)
+        self._matrix = np.ascontiguousarray(integrator.prediction[:n_row])
         self._update = np.array([integrator.u_from_a, integrator.v_from_a]).reshape(2, *(1 for _ in shape))
+        self.force = self._work[n_row]  # (1+α) F^c - α F^p of the next prediction [N]; used up by it
         self.acceleration = np.zeros(shape)  # of the new time, as far as it is known
         self._product = np.empty(shape)
+        self._dense = integrator.dense
+        if self._dense is not None:
+            width = (n_row - 1) * integrator.size
+            self._stacked = self._work[2:].reshape(width, *shape[1:])
 
-    def predict(self, force: FloatArray) -> None:
-        """Advance under (1+α) F^c - α F^p [N], of the shape of the d.o.f.; the force is overwritten."""
-        integrator, predicted = self.integrator, self._predicted
-        values = self.state.values
-        np.matmul(self._matrix, values.reshape(3, -1), out=self._flat_predicted)
-        force -= _product(integrator.K, predicted[2], self._product)
+    def predict(self) -> None:
+        """Advance under ``force``."""
+        work, integrator = self._work, self.integrator
+        np.matmul(self._matrix, self.state.values.reshape(3, -1), out=self._rows)
+        if self._dense is not None:
+            np.dot(self._dense, self._stacked, out=self.acceleration)
+            return
+        force = self.force
+        force -= _product(integrator.K, work[2], self._product)
         if integrator.C is not None:
-            force -= _product(integrator.C, predicted[3], self._product)
+            force -= _product(integrator.C, work[3], self._product)
         if integrator.matrices.C_low_rank is not None:
-            force -= integrator.matrices.C_low_rank.apply(predicted[3])
+            force -= integrator.matrices.C_low_rank.apply(work[3])
         integrator.factor.solve(force, out=self.acceleration)
 
     def displacement(self, where: npt.NDArray[np.int64]) -> FloatArray:
         """Displacements at flat positions (any shape) at the new time, as far as it is known."""
         result = self.acceleration.take(where)
         result *= self.integrator.u_from_a
-        result += self._predicted[0].take(where)
+        result += self._work[0].take(where)
         return result
 
     def add(self, acceleration: FloatArray) -> None:
@@ -225,13 +247,13 @@ class Stepper:
     def hold(self) -> None:
         """Take the state as it is for the new time: displacements read it as if just computed."""
         self.acceleration[...] = self.state.a
-        self._predicted[0] = self.state.u - self.integrator.u_from_a * self.state.a
+        self._work[0] = self.state.u - self.integrator.u_from_a * self.state.a
 
     def finish(self) -> None:
         """Complete the state at the new time."""
         values = self.state.values
         np.multiply(self._update, self.acceleration, out=values[:2])
-        values[:2] += self._predicted[:2]
+        values[:2] += self._work[:2]
         values[2] = self.acceleration
 
 

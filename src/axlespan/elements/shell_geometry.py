@@ -172,10 +172,9 @@ def link_matrices(geometry: FlatGeometry, offset: npt.ArrayLike = 0.0) -> tuple[
     # (θ × d n) in the plane: (d θ_y, -d θ_x)
     turned = (reach[..., None] * y, -reach[..., None] * x)
     for row, (axis, link) in enumerate(zip((x, y), turned, strict=True)):
-        membrane[:, node, row, node, :3] = axis.transpose(1, 0, 2)
-        membrane[:, node, row, node, 3:] = link.transpose(1, 0, 2)
-    membrane[:, node, 2, node, 3:] = bending[:, node, 0, node, :3] = normal.transpose(1, 0, 2)
-    bending[:, node, 1, node, 3:], bending[:, node, 2, node, 3:] = x.transpose(1, 0, 2), y.transpose(1, 0, 2)
+        membrane[:, node, row, node, :3], membrane[:, node, row, node, 3:] = axis, link
+    membrane[:, node, 2, node, 3:] = bending[:, node, 0, node, :3] = normal
+    bending[:, node, 1, node, 3:], bending[:, node, 2, node, 3:] = x, y
     shape = (n_e, 3 * n, 6 * n)
     return membrane.reshape(shape), bending.reshape(shape)
 

@@ -97,7 +97,7 @@ def interpolation(
     array([2])
     """
     geometry = flatten(kind, coordinates)
-    n_e, n = geometry.height.shape
+    n_e = len(geometry.area)
     where = np.asarray(natural, dtype=float)
     if where.shape[-1:] != (2,) or where.ndim not in (2, 3) or (where.ndim == 3 and len(where) != n_e):
         raise InputError(

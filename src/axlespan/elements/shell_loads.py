@@ -73,7 +73,8 @@ def mass(
     plate = _weighted_product(bending, layer[..., None] * inertia[:, None])
     to_membrane, to_bending = link_matrices(geometry, reach)
     matrix: FloatArray = to_membrane.transpose(0, 2, 1) @ plane @ to_membrane
-    return matrix + to_bending.transpose(0, 2, 1) @ plate @ to_bending
+    matrix += to_bending.transpose(0, 2, 1) @ plate @ to_bending
+    return 0.5 * (matrix + matrix.transpose(0, 2, 1))
 
 
 def surface_pressure(kind: ShellKind, coordinates: npt.ArrayLike, pressure: npt.ArrayLike) -> FloatArray:

@@ -176,7 +176,7 @@ def drive(
 def _make(convoy: Convoy, stretch: Stretch, couple: Couple) -> dict[int, tuple[int, str | None]]:
     """Make the steps of a stretch; lanes that failed, with the step inside the stretch and a message."""
     external = convoy.external(stretch)
-    monitors = [lane.recorder.energy for lane in convoy.lanes]
+    watching = [lane.recorder.watchers for lane in convoy.lanes]
     convoy.tape.start(stretch.n_step)
     message: str | None = None
     with np.errstate(over="ignore", invalid="ignore"):
@@ -187,9 +187,9 @@ def _make(convoy: Convoy, stretch: Stretch, couple: Couple) -> dict[int, tuple[i
                 message = str(error)
                 break
             convoy.tape.take(convoy.structure, convoy.fleet, forces)
-            for i, monitor in enumerate(monitors):
-                if monitor.looks_at(stretch.first + k):
-                    monitor.look(stretch.first + k, *convoy.moment(i))
+            for i, watchers in enumerate(watching):
+                if watchers.looks_at(stretch.first + k):
+                    watchers.look(stretch.first + k, *convoy.moment(i))
     bad = {i: convoy.lanes[i].recorder.first_bad(convoy.tape_of(i)) for i in range(len(convoy.lanes))}
     found = {i: (k, None) for i, k in bad.items() if k is not None}
     if found:

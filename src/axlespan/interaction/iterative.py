@@ -10,41 +10,48 @@ import numpy as np
 import numpy.typing as npt
 
 from axlespan.errors import AnalysisError
+from axlespan.interaction.bodies import FleetBody
 from axlespan.interaction.contact_system import Stretch
 from axlespan.interaction.convoy import Convoy
+from axlespan.interaction.led_fleet import LedFleet
 from axlespan.interaction.march import all_forces
 
 FloatArray = npt.NDArray[np.float64]
 
 
-def couple_iteratively(convoy: Convoy, stretch: Stretch, k: int, external: FloatArray | None) -> FloatArray:
-    """One step by iteration between structure and vehicles.
+class IterativeCoupling:
+    """Couples structure and vehicles by iteration; holds the vehicles' system as led along a line."""
 
-    Raises
-    ------
-    AnalysisError
-        If the step does not converge, with the step, the residual and a remedy.
-    """
-    structure, fleet = convoy.structure, convoy.fleet
-    known = convoy.known_load(stretch, k)
-    structure.predict(None if external is None else convoy.forces.vectors @ external, known)
-    if fleet is None:
-        structure.take(None, known)
-        return convoy.joint.weight
-    fleet.predict()
-    gap = stretch.gap[k] - fleet.at_wheels()
-    if not len(stretch.into):
-        forces = np.asarray(fleet.stiffness @ gap)
-        structure.take(None, known)
-    else:
-        forces = _converged(convoy, stretch, k, gap)
+    def __init__(self) -> None:
+        self._led: LedFleet | None = None
+        self._of: FleetBody | None = None
+
+    def __call__(self, convoy: Convoy, stretch: Stretch, k: int, external: FloatArray | None) -> FloatArray:
+        """One step of a single lane.
+
+        Raises
+        ------
+        AnalysisError
+            If the step does not converge, with the step, the residual and a remedy.
+        """
+        structure, fleet = convoy.structure, convoy.fleet
+        known = convoy.known_load(stretch, k)
+        structure.predict(None if external is None else convoy.forces.vectors @ external, known)
+        if fleet is None:
+            structure.take(None, known)
+            return convoy.joint.weight
+        if self._led is None or self._of is not fleet:
+            self._led, self._of = LedFleet(fleet), fleet
+        fleet.predict()
+        self._led.begin()
+        forces = _converged(convoy, self._led, stretch, k)
         load = structure.path_load(stretch.held[k], stretch.weights[k], forces[stretch.into])
         structure.take_solved(load, known)
-    fleet.take(forces)
-    return all_forces(convoy, forces)
+        fleet.take(forces)
+        return all_forces(convoy, forces)
 
 
-def _converged(convoy: Convoy, stretch: Stretch, k: int, gap: FloatArray) -> FloatArray:
+def _converged(convoy: Convoy, led: LedFleet, stretch: Stretch, k: int) -> FloatArray:
     """Contact forces (n_coupled,) of one step; the structure is left with their response."""
     structure, fleet = convoy.structure, convoy.fleet
     assert fleet is not None
@@ -54,15 +61,17 @@ def _converged(convoy: Convoy, stretch: Stretch, k: int, gap: FloatArray) -> Flo
     free = structure.stepper.acceleration.copy()
     forces, residual = fleet.forces, np.inf
     for count in range(1, settings.limit + 1):
-        load = structure.path_load(held, weights, forces[into])
         force = np.zeros(structure.integrator.size)
-        force[structure.columns.held] = -structure.integrator.weight_c * load
+        force[structure.columns.held] = -structure.integrator.weight_c * structure.path_load(
+            held, weights, forces[into]
+        )
         structure.stepper.acceleration[...] = free + structure.integrator.factor.solve(force, out=force)
-        reached = gap.copy()
-        reached[into] += structure.gather(flat, weights)
-        wanted = np.asarray(fleet.stiffness @ reached)
+        line = stretch.gap[k].copy()
+        if len(into):
+            line[into] += structure.gather(flat, weights)
+        wanted = led.forces(line)
         residual = float(np.abs(wanted - forces).max())
-        if residual <= limit:
+        if residual <= limit or not len(into):
             convoy.count("iterations", count)
             return wanted
         if not np.isfinite(residual):

@@ -204,12 +204,10 @@ class EnergyMonitor:
         self._samples = set(
             np.unique(np.linspace(1, steps, min(_ENERGY_SAMPLES, steps)).astype(int)).tolist()
         )
+        # A balanced step needs the one before it.
+        self.steps = frozenset(self._samples | {step - 1 for step in self._samples})
         self._before: tuple[State, State, FloatArray, FloatArray] | None = None
         self._worst, self._scale = 0.0, 0.0
-
-    def looks_at(self, step: int) -> bool:
-        """Whether a step matters: it is balanced, or the one after it is."""
-        return step in self._samples or step + 1 in self._samples
 
     def look(
         self, step: int, structure: State, vehicles: State, load: FloatArray, forces: FloatArray

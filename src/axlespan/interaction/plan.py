@@ -112,7 +112,9 @@ def plan_for(crossing: Crossing, settings: Settings) -> Plan:
 def _check_damping(structure: Structure) -> None:
     """Modal damping acts on velocities relative to fixed supports."""
     system = structure.system
-    if system.modal_damping is not None and not all(isinstance(motion, Constant) for motion in system.motions):
+    if system.modal_damping is not None and not all(
+        isinstance(motion, Constant) for motion in system.motions
+    ):
         raise InputError(
             "acts on the motion relative to supports that stand still, but a support moves",
             field="damping",

@@ -11,12 +11,14 @@ import numpy.typing as npt
 
 from axlespan.dynamics.integrator import State
 from axlespan.errors import AnalysisError, Outcome
+from axlespan.interaction.fields import FieldWatcher
 from axlespan.interaction.monitors import BalanceMonitor, CompatibilityMonitor, EnergyMonitor, TensionMonitor
 from axlespan.interaction.plan import Plan
 from axlespan.interaction.reactions import Reactions
 from axlespan.interaction.result import Result
 from axlespan.interaction.settings import DAMPED_ALPHA
 from axlespan.interaction.tape import LaneTape
+from axlespan.interaction.watchers import Watchers
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -51,6 +53,8 @@ class Recorder:
         self._sensor_dofs, self._sensor_weights = self._sensors()
         self.reactions = Reactions(plan)
         self.compatibility, self.energy = CompatibilityMonitor(), EnergyMonitor(plan)
+        self.fields = FieldWatcher(plan)
+        self.watchers = Watchers([self.energy, self.fields])
         self.balance, self.tension = BalanceMonitor(plan, self.reactions.paths), TensionMonitor(plan)
         n_sensor = len(self._sensor_dofs)
         self.histories = Histories(
@@ -81,8 +85,8 @@ class Recorder:
         tape = LaneTape(near, vehicles.values[:, None], forces[None], sums)
         zero = np.zeros(1, dtype=np.int64)
         self._take(zero, self.plan.rows.positions(np.zeros(1)), tape)
-        if self.energy.looks_at(0):
-            self.energy.look(0, structure, vehicles, load, forces[self.plan.fleet.coupled])
+        if self.watchers.looks_at(0):
+            self.watchers.look(0, structure, vehicles, load, forces[self.plan.fleet.coupled])
 
     def work_up(self, steps: IntArray, positions: FloatArray, tape: LaneTape) -> None:
         """Work up the tape of consecutive good steps: histories, reactions, peaks, checks."""
@@ -185,6 +189,7 @@ class Recorder:
             vehicle_velocity=h.vehicle["velocity"][:n],
             vehicle_acceleration=h.vehicle["acceleration"][:n],
             support_reaction=h.support_reaction[:n],
+            fields=self.fields.fields(self.completed),
             outcome=outcome,
             checks=self._checks(),
             facts={**facts, **self.counts, "completed_steps": self.completed, "notes": tuple(self.notes)},

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from axlespan.errors import InputError, Outcome
+from axlespan.interaction.fields import Fields
 
 if TYPE_CHECKING:
     import xarray
@@ -59,6 +60,7 @@ class Result:
     outcome: Outcome
     checks: Mapping[str, Any] = field(default_factory=dict)
     facts: Mapping[str, Any] = field(default_factory=dict)  # about the run: sizes, solver, timing, notes
+    fields: Fields | None = None  # the whole structure at chosen times
 
     def at(self, quantity: str, name: str) -> FloatArray:
         """The history (n_time,) of one named sensor, contact, vehicle d.o.f. or support.

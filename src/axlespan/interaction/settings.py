@@ -10,6 +10,7 @@ import numpy as np
 from axlespan.dynamics.alpha import Alpha
 from axlespan.errors import InputError
 from axlespan.interaction.crossing import Crossing
+from axlespan.interaction.outputs import envelope_names, field_steps, section_names
 
 #: Ways of coupling vehicle and structure.
 COUPLINGS = ("direct", "iterative", "refactored", "literal")
@@ -51,6 +52,9 @@ class Settings:
     every: int = 1
     sensors: Mapping[str, float] = field(default_factory=dict)  # name -> position [m]
     iteration: Iteration = field(default_factory=Iteration)
+    fields: Sequence[int] = ()  # time indices of whole fields
+    section_forces: tuple[str, ...] = ()  # sensors at which section forces are kept
+    envelopes: tuple[str, ...] = ()  # quantities of which envelopes along the line are kept
     notes: Sequence[str] = ()  # what was chosen by default, and warnings
 
 
@@ -66,6 +70,9 @@ def settings_for(
     every: int = 1,
     sensors: Mapping[str, float] | None = None,
     iteration: Iteration | None = None,
+    fields: Sequence[float] | int | None = None,
+    section_forces: Sequence[str] | None = None,
+    envelopes: Sequence[str] | None = None,
 ) -> Settings:
     """Check the settings of a run and fill in what the user left to us.
 
@@ -90,6 +97,9 @@ def settings_for(
         int(every),
         dict(sensors or {}),
         iteration or Iteration(),
+        field_steps(fields, float(time_step), int(steps)),
+        section_names(section_forces, sensors or {}),
+        envelope_names(envelopes),
         tuple(notes),
     )
 

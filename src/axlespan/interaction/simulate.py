@@ -13,7 +13,7 @@ from axlespan.errors import AnalysisError, InputError, Outcome
 from axlespan.interaction.bodies import PreparedStructure
 from axlespan.interaction.convoy import Couple, Lane, drive
 from axlespan.interaction.crossing import Crossing
-from axlespan.interaction.iterative import couple_iteratively
+from axlespan.interaction.iterative import IterativeCoupling
 from axlespan.interaction.literal import couple_literally
 from axlespan.interaction.march import couple_directly
 from axlespan.interaction.plan import Plan, plan_for
@@ -23,12 +23,14 @@ from axlespan.interaction.result import Result
 from axlespan.interaction.settings import Iteration, Settings, settings_for
 from axlespan.interaction.start import start_of
 
-_COUPLES: dict[str, tuple[Couple, bool]] = {
-    "direct": (couple_directly, True),
-    "iterative": (couple_iteratively, False),
-    "refactored": (couple_by_refactoring, False),
-    "literal": (couple_literally, False),
-}
+
+def _couple(coupling: str) -> tuple[Couple, bool]:
+    """How to make a step, and whether it needs the contact systems."""
+    if coupling == "direct":
+        return couple_directly, True
+    if coupling == "iterative":
+        return IterativeCoupling(), False
+    return {"refactored": couple_by_refactoring, "literal": couple_literally}[coupling], False
 
 
 def simulate(
@@ -43,6 +45,9 @@ def simulate(
     solver: str = "auto",
     every: int = 1,
     iteration: Iteration | None = None,
+    fields: Sequence[float] | int | None = None,
+    section_forces: Sequence[str] | None = None,
+    envelopes: Sequence[str] | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Result:
     """Simulate a crossing.
@@ -71,6 +76,14 @@ def simulate(
         Keep every n-th step.
     iteration : Iteration, optional
         Tolerance, relaxation and limit of the iterative coupling.
+    fields : sequence of float, or int, optional
+        Times [s] of whole displacement and velocity fields (the nearest steps are taken), or at every so
+        many steps; see :class:`axlespan.interaction.fields.Fields`.
+    section_forces : sequence of str, optional
+        Names of sensors at which moment, shear, normal force and torsion of the beams are kept.
+    envelopes : sequence of str, optional
+        Quantities whose extremes along the line are kept: "moment", "shear", "normal", "torsion",
+        "deflection", "acceleration".
     progress : callable, optional
         Called with the number of steps done, now and then.
 
@@ -96,6 +109,9 @@ def simulate(
         every=every,
         sensors=sensors,
         iteration=iteration,
+        fields=fields,
+        section_forces=section_forces,
+        envelopes=envelopes,
     )
     return run_plan(plan_for(crossing, settings), progress)
 
@@ -110,6 +126,9 @@ def simulate_many(
     footprint: float | None = None,
     solver: str = "auto",
     every: int = 1,
+    fields: Sequence[float] | int | None = None,
+    section_forces: Sequence[str] | None = None,
+    envelopes: Sequence[str] | None = None,
 ) -> list[Result]:
     """Simulate several crossings of one structure side by side, from one factorization.
 
@@ -119,7 +138,7 @@ def simulate_many(
         All with the same ``structure``; trains, speeds, starts and irregularities may differ.
     steps : int or sequence of int
         Number of time steps, one for all or one each.
-    time_step, method, sensors, footprint, solver, every
+    time_step, method, sensors, footprint, solver, every, fields, section_forces, envelopes
         As for :func:`simulate`. The defaults of method and footprint follow from all trains together.
 
     Returns
@@ -155,6 +174,9 @@ def simulate_many(
             footprint=footprint,
             solver=solver,
             every=every,
+            fields=fields,
+            section_forces=section_forces,
+            envelopes=envelopes,
         )
 
     pairs = list(zip(crossings, counts, strict=True))
@@ -182,7 +204,7 @@ def run_plans(plans: Sequence[Plan], progress: Callable[[int], None] | None = No
     settings = plans[0].settings
     prepared = prepare(plans)
     lanes = [Lane.at_start(plan, start_of(plan), Recorder(plan, progress)) for plan in plans]
-    couple, systems = _COUPLES[settings.coupling]
+    couple, systems = _couple(settings.coupling)
     drive(lanes, prepared, couple, systems=systems)
     seconds = time.perf_counter() - begun
     return [_result(lane, prepared, seconds, len(lanes)) for lane in lanes]

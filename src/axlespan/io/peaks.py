@@ -38,6 +38,22 @@ def lowest(values: FloatArray, columns: Sequence[int] | None = None) -> Peak | N
     return None if peak is None else Peak(-peak.value, peak.row, peak.column)
 
 
+def clean(value: float) -> float:
+    """A time without the last digits that a product of step and number leaves.
+
+    Examples
+    --------
+    >>> 3 * 0.1, clean(3 * 0.1)
+    (0.30000000000000004, 0.3)
+    """
+    return float(f"{value:.12g}")
+
+
+def time_of(result: Result, row: int) -> float:
+    """A time of the result [s]."""
+    return clean(float(result.time[row]))
+
+
 def static_forces(result: Result) -> FloatArray:
     """Static contact forces (n_contact,) [N]; zero where the result does not know them."""
     known = result.checks.get("static_contact_force") or {}

@@ -8,6 +8,7 @@ import secrets
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from io import BytesIO
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -88,15 +89,15 @@ def write_result(
     """
     place = Path(path)
     part = place.with_name(f".{place.name}.{os.getpid()}-{secrets.token_hex(4)}.part")
+    # Made in memory: a disk that is full while HDF5 closes a file takes the whole process down.
+    content = BytesIO()
+    with h5netcdf.File(content, "w") as file:
+        file.attrs.update(_attributes(result, case_text, version or axlespan.__version__))
+        _write_coordinates(file, result)
+        _write_histories(file, result)
     try:
-        part.touch(exist_ok=False)  # says plainly if the place is no good, which h5netcdf does not
-        with h5netcdf.File(part, "w") as file:
-            file.attrs.update(_attributes(result, case_text, version or axlespan.__version__))
-            _write_coordinates(file, result)
-            _write_histories(file, result)
+        part.write_bytes(content.getbuffer())
         os.replace(part, place)
-    except RuntimeError as error:  # HDF5 on a full disk
-        raise OSError(f"{place}: cannot be written: {_reason(error)}") from error
     finally:
         part.unlink(missing_ok=True)
     return place

@@ -17,7 +17,8 @@ import axlespan
 from axlespan.interaction.crossing import Crossing
 from axlespan.interaction.result import Result
 from axlespan.io.dof_units import is_rotation, unit_of
-from axlespan.io.peaks import Peak, force_ratios, highest, lowest
+from axlespan.io.force_extremes import force_extremes
+from axlespan.io.peaks import clean, highest, lowest, time_of
 from axlespan.io.strict_json import json_ready, to_json
 from axlespan.io.summary_text import print_summary, summary_lines
 from axlespan.io.verdicts import verdicts
@@ -80,7 +81,7 @@ def summary(
         "run": {"title": title, **_what(crossing), **_run(result)},
         "computation": _computation(result),
         "sensors": _sensors(result),
-        "contact_forces": _contact_forces(result),
+        "contact_forces": force_extremes(result, _ends(crossing)),
         "tension": _tension(result),
         "vehicle_accelerations": _vehicle_accelerations(result),
         "support_reactions": _reactions(result),
@@ -122,12 +123,12 @@ def _what(crossing: Crossing | None) -> dict[str, Any]:
     )
     if crossing is None:
         return dict.fromkeys(names)
-    path = next(iter(crossing.structure.lines.values()))
+    begin, end = _ends(crossing) or (None, None)
     speeds = crossing.motion.speeds
     values = (
         crossing.structure.name,
-        path.start,
-        path.stop,
+        begin,
+        end,
         crossing.train.name,
         len(crossing.train.placements),
         speeds[0],
@@ -136,9 +137,12 @@ def _what(crossing: Crossing | None) -> dict[str, Any]:
     return dict(zip(names, values, strict=True))
 
 
-def _time(result: Result, row: int) -> float:
-    """A time [s], without the last digits that a product of step and number leaves."""
-    return float(f"{result.time[row]:.12g}")
+def _ends(crossing: Crossing | None) -> tuple[float, float] | None:
+    """Where the first running line begins and ends [m]."""
+    if crossing is None:
+        return None
+    path = next(iter(crossing.structure.lines.values()))
+    return float(path.start), float(path.stop)
 
 
 def _run(result: Result) -> dict[str, Any]:
@@ -148,7 +152,7 @@ def _run(result: Result) -> dict[str, Any]:
         "time_step_s": facts.get("time_step"),
         "steps": facts.get("steps"),
         "completed_steps": facts.get("completed_steps"),
-        "simulated_s": _time(result, -1) if len(result.time) else 0.0,
+        "simulated_s": time_of(result, -1) if len(result.time) else 0.0,
         "kept_times": len(result.time),
         "alpha": facts.get("alpha"),
         "beta": facts.get("beta"),
@@ -181,46 +185,9 @@ def _extremes(result: Result, table: np.ndarray, column: int, quantity: str, uni
         return {}
     return {
         f"{quantity}_min_{unit}": bottom.value,
-        f"{quantity}_min_time_s": _time(result, bottom.row),
+        f"{quantity}_min_time_s": time_of(result, bottom.row),
         f"{quantity}_max_{unit}": top.value,
-        f"{quantity}_max_time_s": _time(result, top.row),
-    }
-
-
-def _contact_forces(result: Result) -> dict[str, Any]:
-    """Extremes of the train: in newtons, and over the static force.
-
-    Steps that were not kept have their extremes in ``*_over_all_steps_N``, without time and place.
-    """
-    ratios = force_ratios(result)
-    largest, smallest = highest(result.contact_force), lowest(result.contact_force)
-    top, bottom = highest(ratios), lowest(ratios)
-    if largest is None or smallest is None or top is None or bottom is None:
-        return {}
-    every = [
-        [value for value in (result.checks.get(f"{kind}_contact_force") or {}).values() if value is not None]
-        for kind in ("largest", "smallest")
-    ]
-    return {
-        "largest": _wheel(result, ratios, largest),
-        "smallest": _wheel(result, ratios, smallest),
-        "largest_over_all_steps_N": max([largest.value, *(v for v in every[0] if np.isfinite(v))]),
-        "smallest_over_all_steps_N": min([smallest.value, *(v for v in every[1] if np.isfinite(v))]),
-        "largest_ratio_to_static": _wheel(result, ratios, top),
-        "smallest_ratio_to_static": _wheel(result, ratios, bottom),
-        "largest_unloading": 1.0 - bottom.value,
-    }
-
-
-def _wheel(result: Result, ratios: np.ndarray, peak: Peak) -> dict[str, Any]:
-    """Which wheel, where, when."""
-    at = peak.row, peak.column
-    return {
-        "contact": result.contact[peak.column],
-        "force_N": result.contact_force[at],
-        "ratio_to_static": ratios[at],
-        "time_s": _time(result, peak.row),
-        "position_m": result.contact_position[at],
+        f"{quantity}_max_time_s": time_of(result, top.row),
     }
 
 
@@ -229,8 +196,8 @@ def _tension(result: Result) -> dict[str, Any]:
     shown = [
         {
             "contact": episode["contact"],
-            "start_s": episode["start"],
-            "stop_s": episode["stop"],
+            "start_s": clean(episode["start"]),
+            "stop_s": clean(episode["stop"]),
             "position_m": episode["position"],
             "largest_tension_N": episode["size"],
         }
@@ -258,10 +225,10 @@ def _vehicle_accelerations(result: Result) -> dict[str, dict[str, Any]]:
             "unit": unit_of("acceleration", part),
             "min": bottom.value,
             "min_vehicle": result.vehicle_dof[bottom.column].partition(".")[0],
-            "min_time_s": _time(result, bottom.row),
+            "min_time_s": time_of(result, bottom.row),
             "max": top.value,
             "max_vehicle": result.vehicle_dof[top.column].partition(".")[0],
-            "max_time_s": _time(result, top.row),
+            "max_time_s": time_of(result, top.row),
         }
     return found
 
@@ -275,8 +242,8 @@ def _reactions(result: Result) -> dict[str, dict[str, Any]]:
         unit = "N_m" if is_rotation(name) else "N"
         found[name] = {
             f"min_{unit}": bottom.value,
-            "min_time_s": _time(result, bottom.row),
+            "min_time_s": time_of(result, bottom.row),
             f"max_{unit}": top.value,
-            "max_time_s": _time(result, top.row),
+            "max_time_s": time_of(result, top.row),
         }
     return found

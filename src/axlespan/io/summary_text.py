@@ -14,7 +14,7 @@ Summary = Mapping[str, Any]
 _ROWS = 8
 
 # Width of the first column of the tables, so that they stand below each other.
-_FIRST = 22
+_FIRST = 24
 
 _STYLES = {"pass": "green", "attention": "bold yellow", "not checked": "dim", "failed": "bold red"}
 
@@ -95,12 +95,16 @@ def _forces(summary: Summary) -> list[str]:
         span = _between(forces["smallest"]["force_N"], forces["largest"]["force_N"])
         return ["Contact forces", f"  {'constant':<13}{span} kN: the static ones"]
     rows = [("largest", forces["largest"]), ("smallest", forces["smallest"])]
+    for end in ("largest", "smallest"):
+        on = forces[f"{end}_on_structure"]
+        if on is not None and on != forces[end]:
+            rows.append((f"{end} on structure", on))
     if (top["contact"], top["time_s"]) != (rows[0][1]["contact"], rows[0][1]["time_s"]):
         rows.append(("most added", top))
     if (bottom["contact"], bottom["time_s"]) != (rows[1][1]["contact"], rows[1][1]["time_s"]):
         rows.append(("most unloaded", bottom))
     header = ["Contact forces", "[kN]", "of static", "wheel", "at [m]", "at [s]", ""]
-    lines = _table(header, [[name, *_wheel_cells(row, run)] for name, row in rows], "rows")
+    lines = _table(header, [[name, *_wheel_cells(row, run)] for name, row in rows], "wheels")
     if forces["largest_unloading"] <= 1.0:
         lines.append(f"  unloading at most {100.0 * forces['largest_unloading']:.1f} % of the static force")
     else:

@@ -21,6 +21,7 @@ from axlespan.model.parts import ElementMatrices, Part
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
+IndexArray = npt.NDArray[np.signedinteger]
 
 # Bytes of the element matrices that are there at one time.
 _CHUNK_BYTES = 50e6
@@ -144,7 +145,7 @@ class _Pattern:
         row = self.begin[block][:, :, None] + rank[:, a] * stride_a
         return np.asarray(row[:, :, :, None] + (rank[:, b] * stride_b)[:, :, None, :])
 
-    def expanded(self) -> tuple[npt.NDArray[np.integer], npt.NDArray[np.integer], npt.NDArray[np.integer]]:
+    def expanded(self) -> tuple[IndexArray, IndexArray, IndexArray]:
         """Column indices, row starts and the sum that each entry takes, of the whole symmetric matrix."""
         n_node = len(self.count)
         i, j = np.divmod(self.pairs, n_node)
@@ -160,8 +161,9 @@ class _Pattern:
         length = np.diff(reach[ends])  # entries in each row of a node
         row_size = np.repeat(length, self.count)
         indptr = np.concatenate([[0], np.cumsum(row_size)])
-        index = np.int32 if max(int(indptr[-1]), self.table.size) < 2**31 else np.int64
-        indices, source = np.empty(int(indptr[-1]), index), np.empty(int(indptr[-1]), index)
+        index = np.dtype(np.int32 if max(int(indptr[-1]), self.table.size) < 2**31 else np.int64)
+        indices: IndexArray = np.empty(int(indptr[-1]), index)
+        source: IndexArray = np.empty_like(indices)
         offset = reach[:-1] - reach[ends[row]]  # of the block in its rows
         for p in range(int(self.count.max(initial=0))):
             for q in range(int(self.count.max(initial=0))):
@@ -169,7 +171,7 @@ class _Pattern:
                 at = indptr[self.first[row[k]] + p] + offset[k] + q
                 indices[at] = self.first[column[k]] + q
                 source[at] = self._sum_of(row[k], column[k], pair[k], p, q)
-        return indices, indptr.astype(index), source
+        return indices, np.asarray(indptr, index), source
 
     def _sum_of(self, row: IntArray, column: IntArray, pair: IntArray, p: int, q: int) -> IntArray:
         """Positions of the sums for entry (p, q) of blocks; the lower triangle takes those of the upper."""

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
-from axlespan.elements import plane
+from axlespan.elements import plane, shells
 from axlespan.elements.continuum import Formulation
-from axlespan.elements.shell_material import ShellMaterial
-from axlespan.elements.shell_normals import side_normals
+from axlespan.elements.shells import ShellMaterial
 from axlespan.errors import InputError
 from axlespan.model.continuum_parts import PlanePart, PlaneState, SolidPart
 from axlespan.model.dofs import COMPONENTS
@@ -62,7 +61,6 @@ class Shells:
     thickness: float  # [m]
     offset: float = 0.0  # from the nodes to the mid-surface, along the normal [m]
     density: float | None = None  # [kg/m^3]; that of the material when left out
-    curved: bool = False  # the elements approximate a curved surface; flat parts may fold all the same
     lumped_mass: bool = False
 
 
@@ -137,6 +135,7 @@ def parts_from_mesh(
             raise InputError("does not fit the model", field=f"section of '{name}'", fix=fix)
         parts += _parts(section, _blocks(mesh, name, section, taken), mesh.points, name, in_plane)
     _check_all_taken(mesh, taken)
+    parts = _curved(parts, mesh.points)
     return tuple(replace(part, nodes=part.nodes + first_node) for part in parts)
 
 
@@ -197,7 +196,9 @@ def _parts(
     section: Section, blocks: list[_Block], points: FloatArray, name: str, in_plane: bool
 ) -> list[_MeshPart]:
     if isinstance(section, Shells):
-        return list(_shells(section, blocks, points, name))
+        if section.offset != 0.0:
+            _check_oriented(blocks, name)
+        return [_shells(section, block) for block in blocks]
     if isinstance(section, Beams):
         return [_beams(section, block, in_plane) for block in blocks]
     if isinstance(section, Bars):
@@ -237,27 +238,37 @@ def _planes(section: Planes, block: _Block, points: FloatArray) -> PlanePart:
     return part
 
 
-def _shells(section: Shells, blocks: list[_Block], points: FloatArray, name: str) -> Iterator[ShellPart]:
-    parts = [
-        ShellPart.of(
-            block.name,
-            block.kind,
-            block.nodes,
-            section.material,
-            thickness=section.thickness,
-            density=section.density,
-            offset=section.offset,
-            lumped_mass=section.lumped_mass,
-            labels=block.labels,
-        )
-        for block in blocks
-    ]
-    if section.offset != 0.0:
-        _check_oriented(blocks, name)
-    if not section.curved:
-        return iter(parts)
-    normals = side_normals(points, {part.shell_kind: part.nodes for part in parts})
-    return (replace(part, side_normals=normals[part.shell_kind]) for part in parts)
+def _shells(section: Shells, block: _Block) -> ShellPart:
+    return ShellPart.of(
+        block.name,
+        block.kind,
+        block.nodes,
+        section.material,
+        thickness=section.thickness,
+        density=section.density,
+        offset=section.offset,
+        lumped_mass=section.lumped_mass,
+        labels=block.labels,
+    )
+
+
+def _curved(parts: list[_MeshPart], points: FloatArray) -> list[_MeshPart]:
+    """Tell the shells of all sets together how far the surface turns away from them."""
+    found: dict[shells.ShellKind, list[ShellPart]] = {}
+    for part in parts:
+        if isinstance(part, ShellPart):
+            part.check(points)
+            found.setdefault(part.shell_kind, []).append(part)
+    if not found:
+        return parts
+    tables = {kind: np.concatenate([part.nodes for part in some]) for kind, some in found.items()}
+    turning = shells.surface_turning(points, tables)
+    turned: dict[int, ShellPart] = {}
+    for kind, some in found.items():
+        ends = np.cumsum([len(part.nodes) for part in some])
+        for part, angle in zip(some, np.split(turning[kind], ends[:-1]), strict=True):
+            turned[id(part)] = replace(part, turning=angle)
+    return [turned.get(id(part), part) for part in parts]
 
 
 def _check_oriented(blocks: list[_Block], name: str) -> None:

@@ -133,9 +133,6 @@ class Model:
         """
         if isinstance(reference, str) and reference in self.node_sets:
             return self.node_sets[reference]
-        if isinstance(reference, str) and reference not in self.node_names and self.node_sets:
-            if not (reference[:1] == "n" and reference[1:].isdigit()):
-                raise nearest(reference, [*self.node_sets, *self.node_names], "node or set of nodes")
         items = [reference] if isinstance(reference, (str, int, np.integer)) else list(reference)
         return np.array([self.node(item) for item in items], dtype=np.int64)
 

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from axlespan.elements import shell_checks, shell_interpolation, shells
-from axlespan.elements.shell_geometry import NODE_COUNT, ShellKind
-from axlespan.elements.shell_loads import mass
-from axlespan.elements.shell_material import ShellMaterial
+from axlespan.elements import shells
+from axlespan.elements.shells import ShellMaterial
 from axlespan.errors import InputError
 from axlespan.model.continuum_parts import named_error
 from axlespan.model.dofs import COMPONENTS, nearest
@@ -20,7 +20,8 @@ from axlespan.model.parts import ElementMatrices
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-_KINDS: dict[str, ShellKind] = {"tri3": "shell3", "quad4": "shell4"}
+_KINDS: Mapping[str, shells.ShellKind] = {"tri3": "shell3", "quad4": "shell4"}
+_NODE_COUNT = {"tri3": 3, "quad4": 4}
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,18 +39,22 @@ class ShellPart:
     thickness: FloatArray  # () or (n_element,) [m]
     offset: FloatArray  # from the reference surface to the mid-surface along the normal, as the thickness [m]
     lumped_mass: bool = False
-    side_normals: FloatArray | None = None  # (n_element, n_node, 3) of a curved surface
+    turning: FloatArray = field(
+        default_factory=lambda: np.zeros(())
+    )  # of a curved surface, as the thickness [rad]
     labels: IntArray | None = None  # (n_element,) what errors call the elements; 1, 2, … when left out
     components: tuple[str, ...] = COMPONENTS
 
     def __post_init__(self) -> None:
         require_positive(self.density, "density", zero=True)
-        count = NODE_COUNT[self.shell_kind]
+        if self.kind not in _KINDS:
+            raise nearest(self.kind, list(_KINDS), "kind of shell element")
         per_element: tuple[tuple[int, ...], ...] = ((), (len(self.nodes),))
         for what, shape, allowed in (
-            ("nodes", np.shape(self.nodes), ((len(self.nodes), count),)),
+            ("nodes", np.shape(self.nodes), ((len(self.nodes), _NODE_COUNT[self.kind]),)),
             ("thickness", np.shape(self.thickness), per_element),
             ("offset", np.shape(self.offset), per_element),
+            ("turning", np.shape(self.turning), per_element),
         ):
             if shape not in allowed:
                 rule = f"must have the shape {' or '.join(str(s) for s in allowed)} for {self.kind}"
@@ -67,7 +72,7 @@ class ShellPart:
         density: float | None = None,
         offset: npt.ArrayLike = 0.0,
         lumped_mass: bool = False,
-        side_normals: FloatArray | None = None,
+        turning: npt.ArrayLike = 0.0,
         labels: IntArray | None = None,
     ) -> ShellPart:
         """Return shells of a material.
@@ -89,8 +94,8 @@ class ShellPart:
             From the reference surface, where the nodes are, to the mid-surface, along the normal [m].
         lumped_mass : bool
             Lumped mass matrices, diagonal where there is no offset.
-        side_normals : array (n_element, n_node, 3), optional
-            Of a curved surface; see `axlespan.elements.shell_normals`.
+        turning : float or array (n_element,)
+            Of a curved surface, from `axlespan.elements.shells.surface_turning` [rad].
         labels : array (n_element,), optional
             Numbers of the elements for error messages.
 
@@ -110,13 +115,12 @@ class ShellPart:
         elements, reach = np.asarray(nodes, dtype=np.int64), np.asarray(offset, float)
         if not np.all(np.isfinite(reach)):
             raise InputError("must be finite", field="offset", value=offset)
-        return cls(name, kind, elements, material, density, t, reach, lumped_mass, side_normals, labels)
+        turned = np.asarray(turning, float)
+        return cls(name, kind, elements, material, density, t, reach, lumped_mass, turned, labels)
 
     @property
-    def shell_kind(self) -> ShellKind:
+    def shell_kind(self) -> shells.ShellKind:
         """Kind of the elements in `axlespan.elements.shells`."""
-        if self.kind not in _KINDS:
-            raise nearest(self.kind, list(_KINDS), "kind of shell element")
         return _KINDS[self.kind]
 
     def coordinates(self, points: FloatArray) -> FloatArray:
@@ -129,9 +133,9 @@ class ShellPart:
             self,
             nodes=self.nodes[elements],
             material=_material_of(self.material, elements),
-            thickness=self.thickness[elements] if self.thickness.ndim else self.thickness,
-            offset=self.offset[elements] if self.offset.ndim else self.offset,
-            side_normals=None if self.side_normals is None else self.side_normals[elements],
+            thickness=_taken(self.thickness, elements),
+            offset=_taken(self.offset, elements),
+            turning=_taken(self.turning, elements),
             labels=self._labels()[elements],
         )
 
@@ -143,29 +147,39 @@ class ShellPart:
         InputError
             If an element has no area or is not convex; it names the elements and the part.
         """
-        x, kind = self.coordinates(points), self.shell_kind
-        bad = shell_checks.check_geometry(kind, x).degenerate
-        if len(bad):
-            named_error(bad, self._labels(), self.name)
-        t, reach = self.thickness, self.offset
+        self.check(points)
+        x, kind, t, reach = self.coordinates(points), self.shell_kind, self.thickness, self.offset
         return ElementMatrices(
-            shells.stiffness(kind, x, self.material, t, reach, self.side_normals),
-            mass(kind, x, self.density, t, reach, self.lumped_mass),
+            shells.stiffness(kind, x, self.material, t, reach, self.turning),
+            shells.mass(kind, x, self.density, t, reach, self.lumped_mass),
         )
 
+    def check(self, points: FloatArray) -> None:
+        """Raise InputError for elements without area or not convex, by their labels."""
+        bad = shells.check_geometry(self.shell_kind, self.coordinates(points)).degenerate
+        if len(bad):
+            named_error(bad, self._labels(), self.name)
+
     def displacement_rows(self, points: FloatArray, elements: IntArray, natural: FloatArray) -> FloatArray:
-        """Displacements of the reference surface (n_chosen, n_point, 3, n_dof) at natural points (n_point, 2)."""
-        reach = self.offset[elements] if self.offset.ndim else self.offset
-        x = self.coordinates(points)[elements]
-        return shell_interpolation.interpolation(self.shell_kind, x, natural, reach)
+        """Displacements of the reference surface at natural points (n_chosen, n_point, 2).
+
+        The result is an array (n_chosen, n_point, 3, n_dof).
+        """
+        x, reach = points[self.nodes[elements]], _taken(self.offset, elements)
+        return shells.interpolation(self.shell_kind, x, natural, reach)
 
     def _labels(self) -> IntArray:
         return np.arange(1, len(self.nodes) + 1) if self.labels is None else self.labels
 
 
+def _taken(values: FloatArray, elements: slice | IntArray) -> FloatArray:
+    return values[elements] if values.ndim else values
+
+
 def _material_of(material: ShellMaterial, elements: slice) -> ShellMaterial:
     """The material of some elements: values that are given one per element are taken."""
     own = {f.name: getattr(material, f.name) for f in fields(material)}
-    return replace(
-        material, **{k: v[elements] for k, v in own.items() if isinstance(v, np.ndarray) and v.ndim == 1}
-    )
+    some: dict[str, Any] = {
+        k: v[elements] for k, v in own.items() if isinstance(v, np.ndarray) and v.ndim == 1
+    }
+    return replace(material, **some)

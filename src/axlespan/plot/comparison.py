@@ -48,12 +48,13 @@ def comparison(
     if not 1 <= len(curves) <= len(COLORS):
         rule = f"must be one to {len(COLORS)} curves"
         raise InputError(rule, field="curves", value=len(curves))
-    axes = axes_or_new(ax)
-    for i, (name, given) in enumerate(curves.items()):
-        values = np.asarray(given, dtype=np.float64)
+    tables = {name: np.asarray(given, dtype=np.float64) for name, given in curves.items()}
+    for name, values in tables.items():
         if values.shape != x.shape:
             rule = f"must have one value for each time, {x.shape[0]} in all"
             raise InputError(rule, field=f"curves.{name}", value=values.shape)
+    axes = axes_or_new(ax)
+    for i, (name, values) in enumerate(tables.items()):
         width = 2.2 if i == 0 and len(curves) > 1 else 1.1
         axes.plot(*thinned(x, values), color=COLORS[i], linestyle=_DASHES[i], linewidth=width, label=name)
     return finish(axes, xlabel, ylabel, window)

@@ -88,10 +88,10 @@ def _motion(
         raise InputError("must not mix displacements and rotations", field="names", value=chosen, fix=fix)
     scale, unit = _SHOWN[quantity][turning.pop()]
     table = np.column_stack([_history(result, quantity, name) for name in chosen])
+    rows = inside(result.time, window)
     axes = axes_or_new(ax)
     sensors = sum(name in result.sensor for name in chosen)
     what = {len(chosen): "sensors", 0: "vehicle d.o.f."}.get(sensors, "curves")
-    rows = inside(result.time, window)
     draw(axes, result.time[rows], scale * table[rows], chosen, what, ends=sensors == 0)
     return finish(axes, "Time [s]", f"{quantity.capitalize()} [{unit}]", window)
 

@@ -40,7 +40,7 @@ PANELS = (
         None,
         "Vertical acceleration at the midpoint of the beam",
         (0.0, 0.9),
-        " (20 modes, all modes)",
+        " (20 modes, all)",
     ),
     Panel(5, "3.1", "displacement", 1, "Vertical displacement of the sprung mass", (0.0, 0.9)),
     Panel(6, "3.1", "acceleration", 1, "Vertical acceleration of the sprung mass", (0.0, 0.9)),

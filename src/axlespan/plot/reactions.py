@@ -49,10 +49,11 @@ def reactions(
     turning = {is_rotation(name) for name in names}
     if len(turning) > 1:
         raise InputError("must not mix forces and moments", field="supports", value=names)
-    axes, rows = axes_or_new(ax), inside(result.time, window)
-    for color, name in zip(COLORS, names, strict=False):
-        history = result.at("support_reaction", name)[rows]
-        axes.plot(*thinned(result.time[rows], 1e-3 * history), color=color, label=name)
+    rows = inside(result.time, window)
+    histories = {name: 1e-3 * result.at("support_reaction", name)[rows] for name in names}
+    axes = axes_or_new(ax)
+    for color, (name, history) in zip(COLORS, histories.items(), strict=False):
+        axes.plot(*thinned(result.time[rows], history), color=color, label=name)
     unit = "kN m" if turning.pop() else "kN"
     left = sum(not is_rotation(name) for name in result.support) - len(names)
     label = "Support reaction" if supports is not None or left <= 0 else "Largest support reactions"

@@ -106,11 +106,13 @@ class Train:
 
     def static_forces(self, gravity: float = GRAVITY) -> FloatArray:
         """Static contact forces (n_contact,) [N]."""
-        cache = {id(item.vehicle): item.vehicle.static_forces(gravity) for item in self.placements}
-        return np.concatenate([cache[id(item.vehicle)] for item in self.placements])
+        kinds = {id(item.vehicle): item.vehicle for item in self.placements}
+        forces = {key: vehicle.static_forces(gravity) for key, vehicle in kinds.items()}
+        return np.concatenate([forces[id(item.vehicle)] for item in self.placements])
 
     def as_axle_loads(self, gravity: float = GRAVITY) -> Train:
         """The same train as moving forces of its static wheel loads."""
-        cache = {id(item.vehicle): item.vehicle.as_axle_loads(gravity) for item in self.placements}
-        placements = tuple(Placement(cache[id(item.vehicle)], item.behind) for item in self.placements)
+        kinds = {id(item.vehicle): item.vehicle for item in self.placements}
+        loads = {key: vehicle.as_axle_loads(gravity) for key, vehicle in kinds.items()}
+        placements = tuple(Placement(loads[id(item.vehicle)], item.behind) for item in self.placements)
         return Train(placements, f"{self.name} as axle loads")

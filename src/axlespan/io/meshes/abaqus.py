@@ -127,7 +127,9 @@ class _Reader:
             **{"PART": self._part, "INSTANCE": self._instance},
         }
         name = keyword.name
-        if name in _GENERATORS:
+        if name in _GENERATORS and not (
+            name == "SYSTEM" and not keyword.data
+        ):  # without data: back to global axes
             raise InputError("is not supported", field=f"*{name}", place=keyword.place, fix=_GENERATORS[name])
         if name in readers:
             if "INPUT" in keyword.parameters:

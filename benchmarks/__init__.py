@@ -1,0 +1,1 @@
+"""Benchmarks: times as medians, and ratios of runs that took turns."""

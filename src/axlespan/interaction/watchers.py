@@ -1,0 +1,52 @@
+"""Watchers: objects that look at the complete state of a crossing after some of its steps."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from axlespan.dynamics.integrator import State
+
+FloatArray = npt.NDArray[np.float64]
+
+
+class Watcher(Protocol):
+    """Looks at a crossing after steps that it knows beforehand."""
+
+    @property
+    def steps(self) -> Collection[int]:
+        """Time indices at which it looks; 0 is the start."""
+        ...
+
+    def look(
+        self, step: int, structure: State, vehicles: State, load: FloatArray, forces: FloatArray
+    ) -> None:
+        """Look at a completed step: states, Eᵀ X (n,) and contact forces (n_coupled,).
+
+        A step may come again with the same values, when a crossing beside it had to leave.
+        """
+        ...
+
+
+class Watchers:
+    """Several watchers as one; the time loop asks ``looks_at`` once a step."""
+
+    def __init__(self, watchers: Iterable[Watcher]) -> None:
+        self._by_step: dict[int, list[Watcher]] = {}
+        for watcher in watchers:
+            for step in watcher.steps:
+                self._by_step.setdefault(step, []).append(watcher)
+
+    def looks_at(self, step: int) -> bool:
+        """Whether any of them looks at a step."""
+        return step in self._by_step
+
+    def look(
+        self, step: int, structure: State, vehicles: State, load: FloatArray, forces: FloatArray
+    ) -> None:
+        """Let those look that look at this step."""
+        for watcher in self._by_step[step]:
+            watcher.look(step, structure, vehicles, load, forces)
