@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 if TYPE_CHECKING:
-    from axlespan import bridges, irregularity, vehicles
+    from axlespan import bridges, irregularity, plot, vehicles
     from axlespan.dynamics.alpha import Alpha
     from axlespan.errors import AnalysisError, AxlespanError, InputError
     from axlespan.interaction.crossing import Crossing
     from axlespan.interaction.result import Result
     from axlespan.interaction.settings import Iteration
-    from axlespan.interaction.simulate import simulate
+    from axlespan.interaction.simulate import simulate, simulate_many
     from axlespan.io.results import read_result, write_result
     from axlespan.model.damping import Modal, Rayleigh
     from axlespan.model.materials import BeamSection, Material
@@ -45,9 +45,10 @@ _HOMES = {
     "Vehicle": "vehicles.vehicle",
     "read_result": "io.results",
     "simulate": "interaction.simulate",
+    "simulate_many": "interaction.simulate",
     "write_result": "io.results",
 }
-_ROOMS = ("bridges", "irregularity", "vehicles")
+_ROOMS = ("bridges", "irregularity", "plot", "vehicles")
 
 __all__ = [
     "Alpha",
@@ -68,8 +69,10 @@ __all__ = [
     "Vehicle",
     "bridges",
     "irregularity",
+    "plot",
     "read_result",
     "simulate",
+    "simulate_many",
     "vehicles",
     "write_result",
 ]

@@ -29,6 +29,10 @@ _FIRST_END = np.array([4, 2, 0, 3])
 _SIGNS = np.array([1.0, 1.0, -1.0, -1.0])
 _MOMENT, _SHEAR, _NORMAL, _TORSION = range(4)
 
+# Local d.o.f. of [w1, ψ1, w2, ψ2] for bending in the x-z plane, where ψ = -ry.
+_W_AND_SLOPE = np.array([2, 4, 8, 10])
+_SLOPE_SIGNS = np.array([1.0, -1.0, 1.0, -1.0])
+
 
 def section_rows(
     coordinates: FloatArray, properties: BeamProperties, frame: FloatArray, xi: FloatArray
@@ -60,7 +64,7 @@ def section_rows(
     deflection = beam.displacement_polynomials(axial, p, identity, np.array([0.0, 0.0, 1.0]))
     inertial[:, _SHEAR] -= m[:, None] * np.einsum("edp,ep->ed", deflection, once)
     inertial[:, _MOMENT] -= (m * length)[:, None] * np.einsum("edp,ep->ed", deflection, twice)
-    rotation = beam.section_rotation_polynomials(axial, p)
+    rotation = _slope_polynomials(p, length)
     rotary = np.asarray(p.rotary_inertia_y) * length
     inertial[:, _MOMENT] += rotary[:, None] * np.einsum("edp,ep->ed", rotation, once)
     polar = (np.asarray(p.rotary_inertia_y) + np.asarray(p.rotary_inertia_z)) * length
@@ -89,7 +93,7 @@ def wheel_polynomials(
     Returns
     -------
     array (n, 2, 4, 4)
-        For wheels before the section (η < ξ) and behind it: rows of :data:`QUANTITIES`, powers η⁰..η³. They
+        For wheels before the section (η < ξ) and after it: rows of :data:`QUANTITIES`, powers η⁰..η³. They
         come on top of what :func:`section_rows` gives for the displacements under that wheel.
     """
     p, length, axial, identity = _in_local_axes(coordinates, properties, frame)
@@ -114,6 +118,15 @@ def _in_local_axes(
     axial[:, 1, 0] = length
     identity = np.broadcast_to(np.eye(3), frame.shape)
     return properties.broadcast(len(coordinates)), length, axial, identity
+
+
+def _slope_polynomials(p: BeamProperties, length: FloatArray) -> FloatArray:
+    """Rotation ψ of the section in the local x-z plane (n, 12, 4)."""
+    bending, shear = np.asarray(p.bending_stiffness_y), np.asarray(p.shear_stiffness_z)
+    phi = beam.shear_parameter(bending, shear, length)
+    result = np.zeros((len(length), 12, 4))
+    result[:, _W_AND_SLOPE] = beam.rotation_polynomials(phi, length) * _SLOPE_SIGNS[:, None]
+    return result
 
 
 def _to_global(rows: FloatArray, frame: FloatArray) -> FloatArray:

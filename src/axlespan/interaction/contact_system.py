@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+import scipy.sparse as sp
 from scipy.linalg.lapack import dposv
 
 from axlespan.contact.rows import RowBlock
@@ -23,8 +24,8 @@ from axlespan.interaction.plan import Plan
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-# Entries of the compliance that are gathered at a time.
-_GATHER = 500_000
+# Entries that are worked on at a time.
+_GATHER = 2_000_000
 
 
 class ContactSystemError(AxlespanError, ArithmeticError):
@@ -202,17 +203,22 @@ def _system(rows: Rows, offset: int, structure: StructureBody, fleet: FleetBody)
 def path_compliance(compliance: FloatArray, local: IntArray, weights: FloatArray) -> FloatArray:
     """E Z Eᵀ (n_step, n_wheel, n_wheel) for rows on the path and its compliance Z (n_path, n_path)."""
     n_step, n_wheel, n_local = local.shape
+    n_path = compliance.shape[0]
+    if not n_path:  # every wheel stands right over a support
+        return np.zeros((n_step, n_wheel, n_wheel))
     result = np.empty((n_step, n_wheel, n_wheel))
-    flat, w = local.reshape(n_step, -1), weights.reshape(n_step, -1)
-    block_steps = max(1, _GATHER // max((n_wheel * n_local) ** 2, 1))
-    for begin in range(0, n_step, block_steps):
-        some = slice(begin, begin + block_steps)
-        index = flat[some, :, None] * compliance.shape[1] + flat[some, None, :]
-        block = compliance.take(index)
-        block *= w[some, None, :]
-        half = block.reshape(-1, n_wheel * n_local, n_wheel, n_local).sum(axis=3)
-        half *= w[some, :, None]
-        result[some] = half.reshape(-1, n_wheel, n_local, n_wheel).sum(axis=2)
+    ones = np.ones(n_local)
+    some_steps = max(1, _GATHER // max(n_wheel * max(n_path, n_wheel * n_local), 1))
+    for begin in range(0, n_step, some_steps):
+        where, w = local[begin : begin + some_steps], weights[begin : begin + some_steps]
+        n = len(where)
+        ends = np.arange(0, n * n_wheel * n_local + 1, n_local)
+        E = sp.csr_array((w.ravel(), where.ravel(), ends), shape=(n * n_wheel, n_path))
+        half = (E @ compliance).reshape(n, n_wheel, n_path)  # E Z
+        columns = np.broadcast_to(where.reshape(n, 1, -1), (n, n_wheel, n_wheel * n_local))
+        block = np.take_along_axis(half, columns, axis=2)
+        block *= w.reshape(n, 1, -1)
+        result[begin : begin + n] = block.reshape(n, n_wheel, n_wheel, n_local) @ ones
     return result
 
 

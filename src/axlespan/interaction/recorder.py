@@ -196,7 +196,11 @@ class Recorder:
         )
 
     def _checks(self) -> dict[str, Any]:
-        tension, static = self.tension, self.plan.fleet.weight
+        tension, names = self.tension, self.plan.crossing.train.contact_names
+
+        def by_contact(values: FloatArray) -> dict[str, float]:
+            return dict(zip(names, values.tolist(), strict=True))
+
         return {
             "finite_values": self.finite,
             "compatibility_residual": self.compatibility.residual,
@@ -204,13 +208,9 @@ class Recorder:
             "energy_residual": self.energy.residual,
             "tension_episodes": tension.count,
             "tension": [asdict(episode) for episode in tension.episodes],
-            "largest_contact_force": dict(
-                zip(self.plan.crossing.train.contact_names, tension.largest.tolist(), strict=True)
-            ),
-            "smallest_contact_force": dict(
-                zip(self.plan.crossing.train.contact_names, tension.smallest.tolist(), strict=True)
-            ),
-            "static_contact_force": dict(
-                zip(self.plan.crossing.train.contact_names, static.tolist(), strict=True)
-            ),
+            "largest_contact_force": by_contact(tension.largest),
+            "largest_contact_force_time": by_contact(tension.largest_at),
+            "smallest_contact_force": by_contact(tension.smallest),
+            "smallest_contact_force_time": by_contact(tension.smallest_at),
+            "static_contact_force": by_contact(self.plan.fleet.weight),
         }

@@ -230,6 +230,10 @@ def _result(lane: Lane, prepared: PreparedStructure, seconds: float, lanes: int)
 def _facts(plan: Plan, prepared: PreparedStructure) -> dict[str, Any]:
     factor = prepared.integrator.factor
     return {
+        "structure": plan.crossing.structure.name,
+        "train": plan.crossing.train.name,
+        "line_start": plan.crossing.structure.line().start,
+        "line_stop": plan.crossing.structure.line().stop,
         "structure_dofs": plan.structure.size,
         "vehicle_dofs": plan.fleet.matrices.size,
         "contacts": plan.rows.n_contact,

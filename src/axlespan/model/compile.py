@@ -40,7 +40,7 @@ def compile_model(model: Model) -> Compiled:
     InputError
         If supports, ties or loads name d.o.f. that don't exist or contradict each other.
     """
-    table = DofTable.of_active(_active(model))
+    table = dof_table(model)
     if table.size == 0:
         raise InputError("must have at least one element", field="model")
     names = table.names(model.node_labels())
@@ -64,6 +64,11 @@ def compile_model(model: Model) -> Compiled:
         independent=independent,
     )
     return Compiled(_with_modal_damping(system, model.damping), table)
+
+
+def dof_table(model: Model) -> DofTable:
+    """Numbers of a model's d.o.f. by node and component, without assembling anything."""
+    return DofTable.of_active(_active(model))
 
 
 def _active(model: Model) -> npt.NDArray[np.bool_]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -22,6 +23,7 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 _PLANE = ("x", "z", "ry")
+_NUMBERED = re.compile(r"n\d+")
 
 
 @dataclass(frozen=True)
@@ -131,8 +133,12 @@ class Model:
         InputError
             If there is no such set or node.
         """
-        if isinstance(reference, str) and reference in self.node_sets:
-            return self.node_sets[reference]
+        if isinstance(reference, str):
+            if reference in self.node_sets:
+                return self.node_sets[reference]
+            known = [*self.node_names, *self.node_sets]
+            if reference not in known and not _NUMBERED.fullmatch(reference):
+                raise nearest(reference, known, "node or set of nodes")
         items = [reference] if isinstance(reference, (str, int, np.integer)) else list(reference)
         return np.array([self.node(item) for item in items], dtype=np.int64)
 

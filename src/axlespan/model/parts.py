@@ -82,7 +82,7 @@ class BeamPart:
         k = beam.stiffness(ends, self.properties, frame)
         m = beam.mass(ends, self.properties, frame)
         if self.offset is not None:
-            arms = self._arms()
+            arms = self.arms()
             k, m = (arms.transpose(0, 2, 1) @ matrix @ arms for matrix in (k, m))
         return ElementMatrices(k[pick], m[pick])
 
@@ -97,10 +97,10 @@ class BeamPart:
             self.coordinates(points), self.properties, self.frame(points), direction
         )
         if self.offset is not None:
-            full = self._arms().transpose(0, 2, 1) @ full
+            full = self.arms().transpose(0, 2, 1) @ full
         return full[:, self.kept()]
 
-    def _arms(self) -> FloatArray:
+    def arms(self) -> FloatArray:
         """Displacements of the ends per displacements of the nodes (n_element, 12, 12)."""
         offset = np.broadcast_to(np.asarray(self.offset), (len(self.nodes), 2, 3))
         result = np.zeros((len(offset), 12, 12))

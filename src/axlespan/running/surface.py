@@ -92,7 +92,7 @@ def line_over(
     unit = unit / np.linalg.norm(unit)
     if model.plane and unit[1] != 0.0:
         raise InputError("must lie in the plane of the model", field="direction", value=unit.tolist())
-    line = Polyline(_corners(model, points))
+    line = Polyline(_corners(model, points), float(start))
     view = View.of(unit, model.plane)
     figures = tuple(Figures.of(facets, view) for facets in facets_of(model, faces, unit))
     if tolerance is None:
@@ -101,7 +101,7 @@ def line_over(
     fits = []
     for group, own in enumerate(figures):
         fits += _fitted(_Sampler(model, own, line, view, tolerance), table, stretches, group)
-    return _path(fits, start)
+    return _path(fits)
 
 
 def _corners(model: Model, points: npt.ArrayLike | str) -> FloatArray:
@@ -200,7 +200,7 @@ def _interpolated(weights: FloatArray) -> tuple[FloatArray, FloatArray]:
     return coefficients, error
 
 
-def _path(fits: list[_Fit], start: float) -> PolynomialPath:
+def _path(fits: list[_Fit]) -> PolynomialPath:
     begin = np.concatenate([fit.begin for fit in fits])
     order = np.argsort(begin)
     n_dof = max(fit.dofs.shape[1] for fit in fits)
@@ -217,8 +217,9 @@ def _path(fits: list[_Fit], start: float) -> PolynomialPath:
     coefficients = np.take_along_axis(coefficients, place[:, :, None], axis=1)
     n_power = int(np.flatnonzero(np.any(coefficients != 0.0, axis=(0, 1))).max()) + 1
     end = max(float(fit.end.max()) for fit in fits)
-    breaks = start + np.append(begin[order], end)
-    return PolynomialPath(breaks, dofs, np.ascontiguousarray(coefficients[:, :, :n_power]))
+    return PolynomialPath(
+        np.append(begin[order], end), dofs, np.ascontiguousarray(coefficients[:, :, :n_power])
+    )
 
 
 def _widened(fit: _Fit, width: int) -> _Fit:

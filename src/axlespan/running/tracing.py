@@ -31,6 +31,7 @@ class Polyline:
     """Corner points of a line in space; positions are arc lengths from the first."""
 
     points: FloatArray  # (k, 3) [m]
+    start: float = 0.0  # position of the first point [m]
 
     def __post_init__(self) -> None:
         if self.points.ndim != 2 or self.points.shape[1] != 3 or len(self.points) < 2:
@@ -59,7 +60,7 @@ class Polyline:
     @property
     def breaks(self) -> FloatArray:
         """Positions (k,) of the points [m]."""
-        return np.concatenate([[0.0], np.cumsum(self.lengths)])
+        return self.start + np.concatenate([[0.0], np.cumsum(self.lengths)])
 
     def at(self, position: FloatArray, piece: IntArray) -> FloatArray:
         """Points (n, 3) at positions (n,) of pieces (n,)."""
@@ -236,14 +237,23 @@ def _winners(
     winner = np.full(len(cuts) - 1, -1, dtype=np.int64)
     got, where = np.unique(stretch[order], return_index=True)
     winner[got] = claims.facet[claim[order[where]]]
-    for i in np.flatnonzero((winner < 0) & (np.diff(cuts) <= 0.01 * tolerance)):  # slivers between facets
-        winner[i] = winner[i - 1] if i else winner[1]
+    winner = _bridged(cuts, winner, tolerance)
     # Join what is in one facet and one piece.
     inner = cuts[1:-1]
     keep = (winner[1:] != winner[:-1]) | np.isin(inner, line.breaks)
     keep = np.concatenate([[True], keep])
     begin = cuts[:-1][keep]
     return begin, np.append(begin[1:], cuts[-1]), winner[keep]
+
+
+def _bridged(cuts: FloatArray, winner: IntArray, tolerance: float) -> IntArray:
+    """Gaps no longer than the tolerance go to the facet before them, at the begin of the line to that after."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], (winner < 0).astype(np.int64), [0]])))
+    result = winner.copy()
+    for first, last in edges.reshape(-1, 2).tolist():
+        if cuts[last] - cuts[first] <= tolerance and last - first < len(winner):
+            result[first:last] = winner[first - 1] if first else winner[last]
+    return result
 
 
 def _nearest(cuts: FloatArray, values: FloatArray) -> IntArray:

@@ -7,6 +7,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from axlespan import irregularity as profiles
 from axlespan import vehicles
 from axlespan.bridges import SupportAt, continuous_beam, simple_span
@@ -243,8 +245,10 @@ def _profile(case: Any) -> Profile:
     if isinstance(case, case_crossing.TableIrregularity):
         table: Profile
         if case.points is not None:
-            table = profiles.Table([x for x, _ in case.points], [r for _, r in case.points])
+            points = np.array(case.points)
+            table = profiles.Table(points[:, 0], points[:, 1])
         else:
+            assert case.file is not None  # the schema asks for one of the two
             table = profiles.Table.from_csv(case.file)
         return _bounded(table, case)
     name = case.name
