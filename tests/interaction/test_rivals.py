@@ -42,6 +42,12 @@ def bridge(elements=8, **more):
     return simple_span(elements=elements, **(BEAM | more))
 
 
+def viaduct(damping=None):
+    """Ten spans, 230 d.o.f."""
+    rest = {key: value for key, value in BEAM.items() if key != "length"}
+    return continuous_beam(spans=[25.0] * 10, elements=12, damping=damping, **rest)
+
+
 def beam_car():
     """A vehicle of beam elements: a flexible car body right on its two wheels."""
     body = BeamProperties(bending_stiffness_y=8e7, mass_per_length=900.0)
@@ -200,6 +206,15 @@ CASES = {
         Crossing(bridge(elements=4, length=6.0), Train.of(BOGIE, 5, 4.5), speed=30.0),
         {},
     ),
+    # Beyond 200 d.o.f. a body is advanced by sparse products and solves.
+    "many d.o.f.": lambda: (
+        Crossing(viaduct(), Train.of(BOGIE, 2, 5.0), speed=30.0, irregularity=WAVE),
+        {"method": Alpha(0.0)},
+    ),
+    "many d.o.f., damped": lambda: (
+        Crossing(viaduct(Rayleigh(0.4, 2e-4)), MIXED, speed=30.0, start=40.0, irregularity=WAVE),
+        {"method": Alpha(-0.1), "solver": "superlu"},
+    ),
     "one element": lambda: (Crossing(bridge(elements=1, length=5.0), Train.of(BOGIE), speed=20.0), {}),
     "one element, wheels with mass": lambda: (
         Crossing(bridge(elements=1, length=5.0), Train.of(COACH), speed=20.0),
@@ -212,6 +227,7 @@ CASES = {
 def run(name, coupling="direct"):
     crossing, settings = CASES[name]()
     length = crossing.structure.length
+    length = min(length, 60.0)
     sensors = {"quarter": 0.25 * length, "middle": 0.5 * length, "near the end": 0.97 * length}
     return simulate(crossing, time_step=STEP, steps=STEPS, sensors=sensors, coupling=coupling, **settings)
 

@@ -108,6 +108,25 @@ def test_newmark_stays_at_rest_too():
     np.testing.assert_allclose(result.contact_force, np.tile(result.contact_force[0], (301, 1)), rtol=1e-9)
 
 
+@pytest.mark.parametrize("start", [0.0, 25.0])
+@pytest.mark.parametrize("train", [Train.of(MASS), Train.of(LIGHT_COACH), Train.of(axle_loads(loads=5e4))])
+def test_a_wheel_that_stands_over_a_bearing(train, start):
+    """Its weight goes straight into the support; the beam feels nothing of it."""
+    crossing = Crossing(BRIDGES["span"](), train, speed=0.0, start=start)
+    result = simulate(crossing, time_step=2e-3, steps=20, method=Alpha(0.0), sensors={"m": 12.5})
+    assert np.ptp(result.contact_force, axis=0).max() < 1e-9 * result.contact_force.max()
+    bearing = result.at("support_reaction", "left.z" if start == 0.0 else "right.z")
+    if len(crossing.train.offsets) == 1 or start == 0.0:
+        np.testing.assert_allclose(bearing, result.contact_force[:, 0], rtol=1e-9)
+        np.testing.assert_allclose(result.sensor_displacement, 0.0, atol=1e-15)
+
+
+def test_a_wheel_that_arrives_with_the_last_step():
+    crossing = Crossing(BRIDGES["span"](), Train.of(MASS), speed=10.0, start=-1.0)
+    result = simulate(crossing, time_step=1e-3, steps=100)
+    np.testing.assert_allclose(result.contact_force, 5750.0 * 9.81, rtol=1e-12)
+
+
 def test_a_mass_standing_on_a_massless_beam():
     """The beam is a spring then: the mass stands, and its force is its weight."""
     crossing = Crossing(BRIDGES["massless"](), Train.of(rigid_mass(mass=9e3)), speed=0.0, start=12.5)

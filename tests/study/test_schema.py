@@ -57,6 +57,7 @@ RIGHT = [
         ),
     ),
     (("output:", "output:\n  fields: {every: 10}\n  reactions: false\n  every: 2"),),
+    (("output:", "output:\n  section_forces: [midspan]\n  envelopes: [moment, deflection]"),),
 ]
 WRONG = [
     ("length:", "lenght:"),
@@ -72,6 +73,7 @@ WRONG = [
     ("    stiffness: 1595 kN/m\n", ""),
     ("reactions", "reaction"),
     ("midspan: 12.5 m", "midspan: [12.5 m]"),
+    ("output:", "output:\n  envelopes: [displacement]"),
 ]
 
 
@@ -119,4 +121,6 @@ def test_the_fixed_names_are_there():
         parts["Analysis"]["properties"]
     )
     assert {"from", "to", "amplitude", "wavelength"} <= set(parts["HarmonicIrregularity"]["properties"])
-    assert {"sensors", "every", "reactions", "fields"} == set(parts["Output"]["properties"])
+    assert {"sensors", "every", "reactions", "fields", "section_forces", "envelopes"} == set(
+        parts["Output"]["properties"]
+    )

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from axlespan.elements import shell_quadrilateral, shell_sides, shell_triangle
+from axlespan.elements import shell_sides
 from axlespan.elements.shell_geometry import (
     FlatGeometry,
     ShellKind,
@@ -18,28 +18,13 @@ from axlespan.elements.shell_geometry import (
     link_matrices,
     per_element,
 )
+from axlespan.elements.shell_shapes import bubbles, shapes
 from axlespan.errors import InputError
 
 FloatArray = npt.NDArray[np.float64]
 
 
-def shape_functions(kind: ShellKind, natural: FloatArray) -> FloatArray:
-    """Linear or bilinear shape functions (..., n_node) at natural points (..., 2)."""
-    family = shell_quadrilateral.bilinear if kind == "shell4" else shell_triangle.linear
-    return family(natural)[0]
-
-
-def integration_rule(kind: ShellKind, geometry: FlatGeometry) -> tuple[FloatArray, FloatArray]:
-    """Natural points (n_point, 2) and weights (n_e, n_point) [m^2], exact to degree 4 or more."""
-    if kind == "shell4":
-        natural, weight = shell_quadrilateral.natural_rule()
-        _, slope = shell_quadrilateral.bilinear(natural)
-        return natural, weight * np.linalg.det(np.einsum("apn,eni->epai", slope, geometry.plane))
-    natural, weight = shell_triangle.natural_rule()
-    return natural, 2.0 * geometry.area[:, None] * weight
-
-
-def plane_rows(kind: ShellKind, geometry: FlatGeometry, natural: FloatArray) -> tuple[FloatArray, FloatArray]:
+def plane_rows(geometry: FlatGeometry, natural: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Displacements of points of the plane per d.o.f. of the plane.
 
     Parameters
@@ -56,9 +41,8 @@ def plane_rows(kind: ShellKind, geometry: FlatGeometry, natural: FloatArray) -> 
     """
     n_e, n = geometry.height.shape
     n_point = natural.shape[-2]
-    family = shell_quadrilateral if kind == "shell4" else shell_triangle
-    value = np.broadcast_to(shape_functions(kind, natural), (n_e, n_point, n))
-    arched = np.broadcast_to(family.bubbles(natural) / 8.0, (n_e, n_point, n))
+    value = np.broadcast_to(shapes(n, natural), (n_e, n_point, n))
+    arched = np.broadcast_to(bubbles(n, natural) / 8.0, (n_e, n_point, n))
     left = np.stack([-geometry.sides[..., 1], geometry.sides[..., 0]], axis=-1)
     membrane = np.zeros((n_e, n_point, 2, n, 3))
     membrane[:, :, 0, :, 0] = membrane[:, :, 1, :, 1] = value
@@ -105,11 +89,11 @@ def interpolation(
         )
     reach = per_element(offset, n_e, "offset")
     to_membrane, to_bending = link_matrices(geometry, reach)
-    membrane, bending = plane_rows(kind, geometry, where)
+    membrane, bending = plane_rows(geometry, where)
     rows = np.concatenate([membrane @ to_membrane[:, None], bending[:, :, :1] @ to_bending[:, None]], axis=2)
     # back from the mid-surface of the plane to the reference surface: u + θ × (h - offset) n
     turn = bending[:, :, 1:] @ to_bending[:, None]
-    height = (shape_functions(kind, where) * geometry.height[:, None]).sum(axis=-1)
+    height = (shapes(geometry.node_count, where) * geometry.height[:, None]).sum(axis=-1)
     back = (height - reach[:, None])[..., None]
     rows[:, :, 0] += back * turn[:, :, 1]
     rows[:, :, 1] -= back * turn[:, :, 0]

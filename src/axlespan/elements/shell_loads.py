@@ -13,7 +13,8 @@ from axlespan.elements.shell_geometry import (
     per_element,
     prepared,
 )
-from axlespan.elements.shell_interpolation import integration_rule, plane_rows, shape_functions
+from axlespan.elements.shell_interpolation import plane_rows
+from axlespan.elements.shell_shapes import integration_rule, shapes
 from axlespan.elements.shell_sides import mean_drilling
 from axlespan.errors import InputError
 
@@ -61,11 +62,11 @@ def mass(
     rho = per_element(density, len(t), "density")
     if np.any(rho < 0.0):
         raise InputError("must be zero or positive", field="density", value=float(rho.min()))
-    natural, weight = integration_rule(kind, geometry)
+    natural, weight = integration_rule(geometry)
     layer = (rho * t)[:, None] * weight
     if lumped:
-        return _lumped_mass(geometry, layer @ shape_functions(kind, natural), t, reach)
-    membrane, bending = plane_rows(kind, geometry, natural)
+        return _lumped_mass(geometry, layer @ shapes(geometry.node_count, natural), t, reach)
+    membrane, bending = plane_rows(geometry, natural)
     plane = _weighted_product(membrane, np.repeat(layer[..., None], 2, axis=2))
     spin = np.sqrt(rho * t**3 / 12.0 * geometry.area)[:, None] * mean_drilling(geometry)
     plane += spin[:, :, None] * spin[:, None, :]
@@ -89,7 +90,7 @@ def surface_pressure(kind: ShellKind, coordinates: npt.ArrayLike, pressure: npt.
     """
     geometry = flatten(kind, coordinates)
     p = per_element(pressure, len(geometry.area), "pressure")
-    return _surface_load(kind, geometry, p[:, None] * geometry.axes[:, 2], np.zeros_like(p))
+    return _surface_load(geometry, p[:, None] * geometry.axes[:, 2], np.zeros_like(p))
 
 
 def body_force(
@@ -112,15 +113,13 @@ def body_force(
     b = np.asarray(force, dtype=float)
     if b.shape not in ((3,), (len(t), 3)) or not np.all(np.isfinite(b)):
         raise InputError(f"must be 3 finite numbers, or ({len(t)}, 3)", field="force", value=force)
-    return _surface_load(kind, geometry, t[:, None] * b, reach)
+    return _surface_load(geometry, t[:, None] * b, reach)
 
 
-def _surface_load(
-    kind: ShellKind, geometry: FlatGeometry, load: FloatArray, offset: FloatArray
-) -> FloatArray:
+def _surface_load(geometry: FlatGeometry, load: FloatArray, offset: FloatArray) -> FloatArray:
     """Nodal loads of a force per area (n_e, 3) on the mid-surface."""
-    natural, weight = integration_rule(kind, geometry)
-    membrane, bending = plane_rows(kind, geometry, natural)
+    natural, weight = integration_rule(geometry)
+    membrane, bending = plane_rows(geometry, natural)
     local = np.einsum("eij,ej->ei", geometry.axes, load)
     plane = np.einsum("ep,ei,epid->ed", weight, local[:, :2], membrane, optimize=True)
     plate = np.einsum("ep,e,epd->ed", weight, local[:, 2], bending[:, :, 0], optimize=True)

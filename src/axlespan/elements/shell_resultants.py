@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from axlespan.elements import shell_quadrilateral, shell_triangle
+from axlespan.elements import shell_hybrid, shell_quadrilateral, shell_triangle
 from axlespan.elements.shell_geometry import FlatGeometry, ShellKind, link_matrices, per_element, prepared
-from axlespan.elements.shell_interpolation import shape_functions
 from axlespan.elements.shell_material import ShellMaterial, ShellSection, section
+from axlespan.elements.shell_shapes import shapes
 from axlespan.errors import InputError
 
 FloatArray = npt.NDArray[np.float64]
@@ -94,7 +94,7 @@ def resultants(
     where = _DEFAULT_POINTS[kind] if natural is None else np.asarray(natural, dtype=float)
     if where.ndim != 2 or where.shape[1] != 2:
         raise InputError("must have the shape (n_point, 2)", field="natural", value=where.shape)
-    at = shape_functions(kind, where) @ geometry.plane
+    at = shapes(geometry.node_count, where) @ geometry.plane
     in_plane, across = (links @ d[:, :, None] for links in link_matrices(geometry, reach))
     if kind == "shell4":
         n, m, q = _of_quadrilaterals(geometry, cut, delta, at, in_plane, across)
@@ -114,8 +114,8 @@ def _of_quadrilaterals(
     """The assumed resultants P β at points (n_e, n_point, 2) of the plane."""
     force_beta = shell_quadrilateral.membrane_parameters(geometry, cut, turning)[0] @ in_plane
     moment_beta = shell_quadrilateral.bending_parameters(geometry, cut)[0] @ across
-    forces = (shell_quadrilateral.membrane_modes(geometry, at) @ force_beta[:, None])[..., 0]
-    moments = (shell_quadrilateral.bending_modes(geometry, at) @ moment_beta[:, None])[..., 0]
+    forces = (shell_hybrid.membrane_modes(geometry, at) @ force_beta[:, None])[..., 0]
+    moments = (shell_hybrid.bending_modes(geometry, at) @ moment_beta[:, None])[..., 0]
     return forces, moments[..., :3], moments[..., 3:]
 
 
@@ -127,7 +127,7 @@ def _of_triangles(
     in_plane: FloatArray,
     across: FloatArray,
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Section stiffness times strains at natural points."""
+    """Section stiffness times strains at natural points; for bending those of the discrete plate alone."""
     strain = shell_triangle.membrane_strain(geometry, cut, turning, natural) @ in_plane[:, None]
     curvature = shell_triangle.curvature(geometry, cut, natural) @ across[:, None]
     shear = shell_triangle.shear_strain(geometry, cut, natural) @ across[:, None]

@@ -207,17 +207,19 @@ class EnergyMonitor:
         # A balanced step needs the one before it.
         self.steps = frozenset(self._samples | {step - 1 for step in self._samples})
         self._before: tuple[State, State, FloatArray, FloatArray] | None = None
+        self._before_step = -1
         self._worst, self._scale = 0.0, 0.0
 
     def look(
         self, step: int, structure: State, vehicles: State, load: FloatArray, forces: FloatArray
     ) -> None:
         """Look at a completed step: states, Eᵀ X (n,) and contact forces (n_coupled,)."""
-        if step in self._samples and self._before is not None:
+        if step in self._samples and self._before is not None and self._before_step == step - 1:
             self._balance(step, structure, vehicles, load, forces)
         self._before = None
         if step + 1 in self._samples:
             self._before = (structure.copy(), vehicles.copy(), load.copy(), forces.copy())
+            self._before_step = step
 
     def _balance(
         self, step: int, structure: State, vehicles: State, load: FloatArray, forces: FloatArray

@@ -11,6 +11,7 @@ import scipy.sparse as sp
 
 from axlespan.contact.rows import TrainRows, WheelPath
 from axlespan.dynamics.integrator import Matrices
+from axlespan.elements.beam_sections import QUANTITIES
 from axlespan.errors import InputError
 from axlespan.interaction.crossing import Crossing
 from axlespan.interaction.forces import AppliedForces
@@ -18,6 +19,7 @@ from axlespan.interaction.settings import Settings
 from axlespan.model.motions import Constant
 from axlespan.model.system import System
 from axlespan.running.path import PolynomialPath
+from axlespan.running.sections import BeamSections
 from axlespan.running.structure import Structure
 from axlespan.vehicles.train import Train
 from axlespan.vehicles.vehicle import Vehicle
@@ -106,6 +108,7 @@ def plan_for(crossing: Crossing, settings: Settings) -> Plan:
     _check_time_step(plan)
     _check_reach(plan)
     _check_sensors(crossing.structure, settings)
+    _check_sections(crossing.structure, settings)
     return plan
 
 
@@ -285,3 +288,14 @@ def _check_sensors(structure: Structure, settings: Settings) -> None:
                 field=f"sensors.{name}",
                 value=position,
             )
+
+
+def _check_sections(structure: Structure, settings: Settings) -> None:
+    """Section forces are those of beams under the line."""
+    line = structure.line()
+    if settings.section_forces:
+        places = np.array([settings.sensors[name] for name in settings.section_forces], float)
+        BeamSections.at(structure, *line.locate(places), wanted="section_forces")
+    if any(name in QUANTITIES for name in settings.envelopes):
+        segments = np.arange(len(line.breaks) - 1)
+        BeamSections.at(structure, segments, np.zeros(len(segments)), wanted="envelopes")

@@ -11,11 +11,13 @@ import numpy.typing as npt
 
 from axlespan.dynamics.integrator import State
 from axlespan.errors import AnalysisError, Outcome
+from axlespan.interaction.envelopes import EnvelopeMonitor
 from axlespan.interaction.fields import FieldWatcher
 from axlespan.interaction.monitors import BalanceMonitor, CompatibilityMonitor, EnergyMonitor, TensionMonitor
 from axlespan.interaction.plan import Plan
 from axlespan.interaction.reactions import Reactions
 from axlespan.interaction.result import Result
+from axlespan.interaction.section_forces import SectionHistories
 from axlespan.interaction.settings import DAMPED_ALPHA
 from axlespan.interaction.tape import LaneTape
 from axlespan.interaction.watchers import Watchers
@@ -55,6 +57,7 @@ class Recorder:
         self.compatibility, self.energy = CompatibilityMonitor(), EnergyMonitor(plan)
         self.fields = FieldWatcher(plan)
         self.watchers = Watchers([self.energy, self.fields])
+        self.sections, self.envelopes = SectionHistories(plan), EnvelopeMonitor(plan)
         self.balance, self.tension = BalanceMonitor(plan, self.reactions.paths), TensionMonitor(plan)
         n_sensor = len(self._sensor_dofs)
         self.histories = Histories(
@@ -64,9 +67,10 @@ class Recorder:
             {name: np.zeros((n_kept, n_sensor)) for name in _QUANTITIES},
             np.zeros((n_kept, len(plan.crossing.structure.system.prescribed))),
         )
-        self.selected, self._inverse = np.unique(
-            np.concatenate([self._sensor_dofs.ravel(), self.reactions.free_dofs]), return_inverse=True
-        )
+        own = np.concatenate([self._sensor_dofs.ravel(), self.reactions.free_dofs])
+        more = [self.sections.free_dofs, self.envelopes.free_dofs]
+        self.selected = np.unique(np.concatenate([own, *more]))
+        self._inverse, *self._more = (np.searchsorted(self.selected, dofs) for dofs in (own, *more))
         self.completed = 0  # time index of the last good step
         self.finite = True
 
@@ -141,6 +145,8 @@ class Recorder:
         reactions = self.reactions.of(steps, values[:, :, n_sensor:], positions, tape.forces)
         self.balance.look(steps, tape.sums, reactions, positions, tape.forces)
         self.tension.look(steps, positions, tape.forces)
+        for keeper, at in zip((self.sections, self.envelopes), self._more, strict=True):
+            keeper.look(steps, tape.near[:, :, at], positions, tape.forces)
         kept = np.flatnonzero(steps % self.every == 0)
         into = steps[kept] // self.every
         h = self.histories
@@ -189,6 +195,9 @@ class Recorder:
             vehicle_velocity=h.vehicle["velocity"][:n],
             vehicle_acceleration=h.vehicle["acceleration"][:n],
             support_reaction=h.support_reaction[:n],
+            section=self.sections.names,
+            **self.sections.histories(n),
+            envelopes=self.envelopes.envelopes(),
             fields=self.fields.fields(self.completed),
             outcome=outcome,
             checks=self._checks(),

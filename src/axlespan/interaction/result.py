@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from axlespan.errors import InputError, Outcome
+from axlespan.interaction.envelopes import Envelopes
 from axlespan.interaction.fields import Fields
 
 if TYPE_CHECKING:
@@ -39,6 +40,19 @@ VARIABLES: dict[str, tuple[str, str, str]] = {
 }
 
 
+#: Variables that a result has for the sections asked for, in the same form.
+SECTION_VARIABLES: dict[str, tuple[str, str, str]] = {
+    "section_moment": ("section", "N m", "bending moment of the beams, sagging positive"),
+    "section_shear": ("section", "N", "shear force of the beams, dM/ds, to the right of an axle over the section"),
+    "section_normal": ("section", "N", "normal force of the beams, tension positive"),
+    "section_torsion": ("section", "N m", "torsional moment of the beams"),
+}
+
+
+def _none() -> FloatArray:
+    return np.zeros((0, 0))
+
+
 @dataclass(frozen=True, eq=False)
 class Result:
     """What a crossing gave, at the times kept."""
@@ -60,6 +74,12 @@ class Result:
     outcome: Outcome
     checks: Mapping[str, Any] = field(default_factory=dict)
     facts: Mapping[str, Any] = field(default_factory=dict)  # about the run: sizes, solver, timing, notes
+    section: tuple[str, ...] = ()  # sensors at which section forces of beams are kept
+    section_moment: FloatArray = field(default_factory=_none)  # (n_time, n_section) [N m]
+    section_shear: FloatArray = field(default_factory=_none)  # (n_time, n_section) [N]
+    section_normal: FloatArray = field(default_factory=_none)  # (n_time, n_section) [N]
+    section_torsion: FloatArray = field(default_factory=_none)  # (n_time, n_section) [N m]
+    envelopes: Envelopes | None = None  # extremes along the line
     fields: Fields | None = None  # the whole structure at chosen times
 
     def at(self, quantity: str, name: str) -> FloatArray:
@@ -74,19 +94,23 @@ class Result:
         --------
         ``result.at("contact_force", "1.1")``, ``result.at("vehicle_acceleration", "1.body.z")``
         """
-        if quantity not in VARIABLES:
-            raise InputError(f"must be one of {', '.join(VARIABLES)}", field="quantity", value=quantity)
-        names: tuple[str, ...] = getattr(self, VARIABLES[quantity][0])
+        known = VARIABLES | SECTION_VARIABLES
+        if quantity not in known:
+            raise InputError(f"must be one of {', '.join(known)}", field="quantity", value=quantity)
+        names: tuple[str, ...] = getattr(self, known[quantity][0])
         if name not in names:
             shown = ", ".join(names[:12]) or "none"
             raise InputError(
-                f"is not a {VARIABLES[quantity][0]} of this result",
+                f"is not a {known[quantity][0]} of this result",
                 field="name",
                 value=name,
                 fix=f"Known: {shown}",
             )
         values: FloatArray = getattr(self, quantity)[:, names.index(name)]
         return values
+
+    def _variables(self) -> dict[str, tuple[str, str, str]]:
+        return VARIABLES | SECTION_VARIABLES if self.section else VARIABLES
 
     def to_xarray(self) -> xarray.Dataset:
         """The result as an xarray Dataset with the names and units of result.nc.
@@ -104,9 +128,9 @@ class Result:
             ) from error
         variables = {
             name: (("time", dimension), getattr(self, name), {"units": unit, "long_name": meaning})
-            for name, (dimension, unit, meaning) in VARIABLES.items()
+            for name, (dimension, unit, meaning) in self._variables().items()
         }
-        dimensions = dict.fromkeys(dimension for dimension, _, _ in VARIABLES.values())
+        dimensions = dict.fromkeys(dimension for dimension, _, _ in self._variables().values())
         coordinates = {name: (name, np.array(getattr(self, name), dtype=object)) for name in dimensions}
         coordinates["time"] = ("time", self.time, {"units": "s", "long_name": "time"})  # type: ignore[assignment]
         return xr.Dataset(

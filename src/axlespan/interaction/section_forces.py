@@ -20,7 +20,7 @@ IntArray = npt.NDArray[np.int64]
 
 # A wheel so close before a section (a share of the line's length) counts as before it, so that sections take
 # the shear on the right of an axle that stands right over them, whatever the rounding of its position.
-_OVER = 1e-9
+_OVER = 1e-12
 
 
 class SectionForces:
@@ -102,3 +102,29 @@ class SectionForces:
             shares = weights * forces[step, wheels[wheel], None]
             total += np.bincount((step[:, None] * n_row + rows).ravel(), shares.ravel(), len(total))
         return total.reshape(n_step, n_row)
+
+
+class SectionHistories:
+    """Section forces at sensors, at every n-th step."""
+
+    def __init__(self, plan: Plan) -> None:
+        self.names, self._every = plan.settings.section_forces, plan.settings.every
+        self._forces: SectionForces | None = None
+        self.free_dofs: IntArray = np.empty(0, dtype=np.int64)
+        if self.names:
+            places = np.array([plan.settings.sensors[name] for name in self.names], float)
+            segments, xi = plan.crossing.structure.line().locate(places)
+            self._forces = SectionForces(plan, segments, xi)
+            self.free_dofs = self._forces.free_dofs
+        n_kept = plan.settings.steps // self._every + 1
+        self._table = np.zeros((n_kept, len(self.names), len(QUANTITIES)))
+
+    def look(self, steps: IntArray, near: FloatArray, positions: FloatArray, forces: FloatArray) -> None:
+        """Look at consecutive steps; see :meth:`SectionForces.of`."""
+        if self._forces is not None:
+            kept = np.flatnonzero(steps % self._every == 0)
+            self._table[steps[kept] // self._every] = self._forces.of(steps, near, positions, forces)[kept]
+
+    def histories(self, n: int) -> dict[str, FloatArray]:
+        """The first n kept (n, n_section), by their names in a result."""
+        return {f"section_{name}": self._table[:n, :, i] for i, name in enumerate(QUANTITIES)}

@@ -18,8 +18,11 @@ COUPLINGS = ("direct", "iterative", "refactored", "literal")
 #: α for wheels with mass, or with a dashpot on a massless contact, when none is given.
 DAMPED_ALPHA = -0.1
 
+# Above this α there is too little numerical damping for wheels with mass.
+_LITTLE_DAMPING = -0.03
+
 #: Largest footprint [m] and its largest share of the running line, when none is given.
-FOOTPRINT, FOOTPRINT_SHARE = 1.2, 0.03
+FOOTPRINT, FOOTPRINT_SHARE = 1.2, 0.02
 
 
 @dataclass(frozen=True)
@@ -127,10 +130,10 @@ def _method(crossing: Crossing, method: Alpha | None, notes: list[str]) -> Alpha
             f"alpha = {DAMPED_ALPHA} by default, because {why}: numerical noise in the contact force is damped"
         )
         return Alpha(DAMPED_ALPHA)
-    if method.alpha == 0.0 and method.gamma == 0.5 and (massive or dashpot):
+    if method.alpha > _LITTLE_DAMPING and method._gamma < 0.5 - _LITTLE_DAMPING and (massive or dashpot):
         notes.append(
-            f"warning: alpha = 0, but {why}: the contact force may oscillate from step to step without bound; "
-            f"leave alpha out, or use alpha: {DAMPED_ALPHA}"
+            f"warning: alpha = {method.alpha:g}, but {why}: the contact force may oscillate from step to step without "
+            f"bound; leave alpha out, or use alpha: {DAMPED_ALPHA}"
         )
     return method
 

@@ -69,7 +69,7 @@ def simulate(
         The direct method, its two rivals, or the direct method as N12 prints it (dense; for small models).
     footprint : float, optional
         Length [m] over which a wheel's contact is spread along the line. By default zero for massless
-        wheels, and for wheels with mass 1.2 m or 3 % of the line, whichever is less.
+        wheels, and for wheels with mass 1.2 m or 2 % of the line, whichever is less.
     solver : str
         Kind of factorization: "auto", "banded", "superlu", "pardiso", "cholmod".
     every : int
@@ -160,7 +160,7 @@ def simulate_many(
             field="crossings",
             fix="Build the structure once, and share it",
         )
-    counts = [steps] * len(crossings) if isinstance(steps, int) else list(steps)
+    counts = list(steps) if isinstance(steps, Sequence | np.ndarray) else [steps] * len(crossings)
     if len(counts) != len(crossings):
         raise InputError("must be one number, or one for each crossing", field="steps", value=len(counts))
 

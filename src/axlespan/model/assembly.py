@@ -91,9 +91,13 @@ def _check_shapes(part: Part, matrices: ElementMatrices) -> None:
 
 @dataclass(frozen=True, eq=False)
 class _Pattern:
-    """Pairs of nodes i ≤ j that share an element; the entries of each are a block of ``count_i · count_j`` sums."""
+    """Pairs of nodes i ≤ j that share an element; the entries of each are a block of ``count_i · count_j`` sums.
+
+    Nodes are counted in the order of their d.o.f.
+    """
 
     table: DofTable
+    rank: IntArray  # (n_node,) place of each node in that order
     pairs: IntArray  # (n_pair,) i n_node + j, sorted
     first: IntArray  # (n_node,) lowest d.o.f. of each node
     count: IntArray  # (n_node,) number of its d.o.f.
@@ -102,19 +106,23 @@ class _Pattern:
 
     @classmethod
     def of(cls, parts: tuple[Part, ...], table: DofTable) -> _Pattern:
-        count = np.count_nonzero(table.number >= 0, axis=1).astype(np.int64)
+        lowest = np.where(table.number >= 0, table.number, table.size).min(axis=1)
+        order = np.argsort(lowest, kind="stable")
+        n_node = len(order)
+        rank = np.empty(n_node, dtype=np.int64)
+        rank[order] = np.arange(n_node)
+        count = np.count_nonzero(table.number[order] >= 0, axis=1).astype(np.int64)
         first = np.cumsum(count) - count
-        n_node = len(count)
         keys = [np.empty(0, dtype=np.int64)]
-        keys += [_distinct(_pair_keys(np.asarray(part.nodes), n_node)) for part in parts]
+        keys += [_distinct(_pair_keys(rank[np.asarray(part.nodes)], n_node)) for part in parts]
         pairs = _distinct(np.concatenate(keys))
         size = count[pairs // n_node] * count[pairs % n_node]
         begin = np.cumsum(size) - size
-        return cls(table, pairs, first, count, begin, int(size.sum()))
+        return cls(table, rank, pairs, first, count, begin, int(size.sum()))
 
     def add(self, part: Part, targets: list[tuple[FloatArray, FloatArray]]) -> None:
         """Add element matrices (n_element, n_dof, n_dof) of a part to arrays of sums."""
-        nodes = np.asarray(part.nodes)
+        nodes = self.rank[np.asarray(part.nodes)]
         n_element, n_node = nodes.shape
         if not targets or not n_element:
             return
@@ -134,16 +142,16 @@ class _Pattern:
 
     def _places(self, part: Part) -> IntArray:
         """Positions (n_element, n_local_pair, c, c) of the entries of an element's pairs of nodes a ≤ b."""
-        nodes = np.asarray(part.nodes)
+        nodes = self.rank[np.asarray(part.nodes)]
         block = np.searchsorted(self.pairs, _pair_keys(nodes, len(self.count)))
-        numbers = self.table.number[nodes][:, :, component_indices(part.components)]
-        rank = numbers - self.first[nodes][:, :, None]  # among the d.o.f. of the node
+        numbers = self.table.number[np.asarray(part.nodes)][:, :, component_indices(part.components)]
+        within = numbers - self.first[nodes][:, :, None]  # among the d.o.f. of the node
         a, b = np.triu_indices(nodes.shape[1])
         turned = (nodes[:, a] > nodes[:, b])[:, :, None]
         stride_a = np.where(turned, 1, self.count[nodes[:, b]][:, :, None])
         stride_b = np.where(turned, self.count[nodes[:, a]][:, :, None], 1)
-        row = self.begin[block][:, :, None] + rank[:, a] * stride_a
-        return np.asarray(row[:, :, :, None] + (rank[:, b] * stride_b)[:, :, None, :])
+        row = self.begin[block][:, :, None] + within[:, a] * stride_a
+        return np.asarray(row[:, :, :, None] + (within[:, b] * stride_b)[:, :, None, :])
 
     def expanded(self) -> tuple[IndexArray, IndexArray, IndexArray]:
         """Column indices, row starts and the sum that each entry takes, of the whole symmetric matrix."""

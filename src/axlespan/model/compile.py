@@ -20,6 +20,9 @@ from axlespan.model.system import Load, System
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
+# Models with more nodes are numbered along their longest direction.
+_ORDERED_ABOVE = 200
+
 # Modal damping: all modes up to this many d.o.f., else so many.
 _ALL_MODES_UP_TO, _MODES_OF_A_LARGE_MODEL = 300, 40
 
@@ -68,7 +71,16 @@ def compile_model(model: Model) -> Compiled:
 
 def dof_table(model: Model) -> DofTable:
     """Numbers of a model's d.o.f. by node and component, without assembling anything."""
-    return DofTable.of_active(_active(model))
+    return DofTable.of_active(_active(model), _order(model.points))
+
+
+def _order(points: FloatArray) -> IntArray | None:
+    """Nodes from one end of a large model to the other: bridges are long, and a narrow band is quick to solve."""
+    if len(points) <= _ORDERED_ABOVE:
+        return None
+    extent = np.ptp(points, axis=0)
+    long = int(np.argmax(extent))
+    return np.argsort(np.round(points[:, long] / (1e-9 * max(extent[long], 1e-30))), kind="stable")
 
 
 def _active(model: Model) -> npt.NDArray[np.bool_]:

@@ -48,10 +48,14 @@ class DofTable:
     number: IntArray  # (n_node, 6)
 
     @classmethod
-    def of_active(cls, active: npt.NDArray[np.bool_]) -> DofTable:
-        """Number the active d.o.f. (n_node, 6) node by node."""
+    def of_active(cls, active: npt.NDArray[np.bool_], order: IntArray | None = None) -> DofTable:
+        """Number the active d.o.f. (n_node, 6) node by node, in an order (n_node,) of the nodes if given."""
         number = np.full(active.shape, -1, dtype=np.int64)
-        number[active] = np.arange(np.count_nonzero(active))
+        sequence = np.arange(len(active)) if order is None else order
+        in_order = np.full(active.shape, -1, dtype=np.int64)
+        chosen = active[sequence]
+        in_order[chosen] = np.arange(np.count_nonzero(active))
+        number[sequence] = in_order
         return cls(number)
 
     @property
@@ -62,6 +66,8 @@ class DofTable:
     def names(self, node_names: list[str]) -> tuple[str, ...]:
         """Names ``node.component`` of all d.o.f. in the order of their numbers."""
         nodes, components = np.nonzero(self.number >= 0)
+        order = np.argsort(self.number[nodes, components])
+        nodes, components = nodes[order], components[order]
         return tuple(
             f"{node_names[i]}.{COMPONENTS[c]}"
             for i, c in zip(nodes.tolist(), components.tolist(), strict=True)

@@ -16,7 +16,7 @@ from axlespan.model.continuum_parts import PlanePart, PlaneState, SolidPart
 from axlespan.model.dofs import COMPONENTS
 from axlespan.model.materials import BeamSection, Material, require_positive
 from axlespan.model.mesh import CELL_KINDS, Mesh
-from axlespan.model.parts import BarPart, BeamPart, Part
+from axlespan.model.parts import BarPart, BeamPart, Part, checked_offset
 from axlespan.model.shell_parts import ShellPart
 
 FloatArray = npt.NDArray[np.float64]
@@ -299,10 +299,8 @@ def _beams(section: Beams, block: _Block, in_plane: bool) -> BeamPart:
     elif section.section.area is None:
         raise InputError("is needed for beams in space", field=f"area of '{block.name}'", value=None)
     up = None if section.up is None else np.asarray(section.up, float)
-    offset = np.asarray(section.offset, float)
-    return BeamPart(
-        block.name, block.nodes, properties, components, up, offset if np.any(offset != 0.0) else None
-    )
+    offset = checked_offset(section.offset, len(block.nodes))
+    return BeamPart(block.name, block.nodes, properties, components, up, offset)
 
 
 def _bars(section: Bars, block: _Block, in_plane: bool) -> BarPart:

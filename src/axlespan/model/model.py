@@ -17,7 +17,7 @@ from axlespan.model.from_mesh import Section, parts_from_mesh
 from axlespan.model.materials import require_positive
 from axlespan.model.mesh import Mesh
 from axlespan.model.motions import Constant, Motion
-from axlespan.model.parts import BarPart, BeamPart, MassPart, Part, SpringPart
+from axlespan.model.parts import BarPart, BeamPart, MassPart, Part, SpringPart, checked_offset
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -204,8 +204,9 @@ class Model:
         if self.plane:
             components = _PLANE if np.any(np.asarray(properties.axial_stiffness) > 0.0) else ("z", "ry")
         direction = None if up is None else np.asarray(up, float)
-        arm = None if offset is None else np.asarray(offset, float)
-        return self.with_part(BeamPart(name, _pairs(nodes), properties, components, direction, arm))
+        pairs = _pairs(nodes)
+        arm = checked_offset(offset, len(pairs))
+        return self.with_part(BeamPart(name, pairs, properties, components, direction, arm))
 
     def with_bars(
         self,

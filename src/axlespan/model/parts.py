@@ -171,3 +171,23 @@ class MassPart:
     def matrices(self, points: FloatArray) -> ElementMatrices:
         """Element matrices (mass only)."""
         return ElementMatrices(mass=discrete.point_mass(self.inertia))
+
+
+def checked_offset(offset: npt.ArrayLike | None, n_element: int) -> FloatArray | None:
+    """Return the offset of beams as an array (3,) or (n_element, 2, 3), None where it is zero.
+
+    Raises
+    ------
+    InputError
+        If it has another shape or is not finite.
+    """
+    if offset is None:
+        return None
+    array = np.asarray(offset, float)
+    if array.shape not in ((3,), (n_element, 2, 3)):
+        raise InputError(
+            f"must have the shape (3,) or ({n_element}, 2, 3)", field="offset of beams", value=array.shape
+        )
+    if not np.all(np.isfinite(array)):
+        raise InputError("must be finite", field="offset of beams", value=array.ravel()[:6].tolist())
+    return array if np.any(array != 0.0) else None

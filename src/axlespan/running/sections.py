@@ -51,9 +51,17 @@ class BeamSections:
 
     @classmethod
     def at(
-        cls, structure: Structure, segments: IntArray, xi: FloatArray, line: str = MAIN_LINE
+        cls,
+        structure: Structure,
+        segments: IntArray,
+        xi: FloatArray,
+        line: str = MAIN_LINE,
+        *,
+        wanted: str = "section_forces",
     ) -> BeamSections:
         """Sections in segments (n_section,) of a line, at ξ (n_section,) from the begin of each.
+
+        ``wanted`` is the input that asks for them, for errors.
 
         Raises
         ------
@@ -62,9 +70,8 @@ class BeamSections:
         """
         if structure.model is None:
             raise InputError(
-                "has matrices but no model, so it has no beams with section forces",
-                field="structure",
-                value=structure.name,
+                f"must be left out: {structure.name} is given by matrices, and section forces are those of beams",
+                field=wanted,
             )
         beams = BeamTable.of(structure.model)
         found = carriers(structure, structure.line(line), beams)
@@ -72,10 +79,9 @@ class BeamSections:
         if len(without):
             at = float(structure.line(line).breaks[without[0]])
             raise InputError(
-                f"has no beam under the running line from {at:g} m on, so no section forces there",
-                field="structure",
-                value=structure.name,
-                fix="Section forces are those of beams: leave them out, or run on a beam",
+                f"must lie on beams: no beam carries the running line of {structure.name} from {at:g} m on",
+                field=wanted,
+                fix="Section forces are those of beams under the line; leave them out elsewhere",
             )
         section, pair = _joined(np.asarray(segments), found.segment)
         backward = found.backward[pair]

@@ -22,6 +22,7 @@ from axlespan.model import motions
 from axlespan.model.damping import Damping, Modal, Rayleigh
 from axlespan.running.structure import Structure
 from axlespan.study import case_crossing, case_damping, case_structure, case_support, case_train
+from axlespan.study.case_analysis import EveryFew
 from axlespan.study.case_multibody import Multibody
 from axlespan.study.faults import InputErrors
 from axlespan.study.loader import LoadedCase
@@ -292,4 +293,7 @@ def _options(analysis: Any, output: Any) -> Mapping[str, Any]:
         "every": output.every,
         "sensors": output.sensors,
         "iteration": Iteration(**iteration),
+        "fields": output.fields.every if isinstance(output.fields, EveryFew) else output.fields,
+        "section_forces": output.section_forces,
+        "envelopes": output.envelopes,
     }

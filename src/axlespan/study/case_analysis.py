@@ -8,9 +8,10 @@ from typing import Annotated, Any, Final, Literal, Self
 from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, model_validator
 
 from axlespan.errors import InputError
+from axlespan.interaction.outputs import ENVELOPES
 from axlespan.study.check_lists import Several
 from axlespan.study.checks import Location, Measured, OneOf, Part
-from axlespan.study.faults import listed
+from axlespan.study.faults import InputErrors, listed, nearest
 from axlespan.study.kinds import LIST, MAPPING, Kinds, list_or_mapping, tag
 from axlespan.study.quantities import Count, Duration, Factor, Flag, Footprint, Gravity, Stiffness, Text
 from axlespan.units import HERTZ_STIFFNESS, NUMBER, TIME
@@ -185,4 +186,25 @@ class Output(Part):
         ]
         | None
     ) = None
-    """Whole displacement fields, at a list of times or at every so many steps."""
+    """Whole fields of displacements and velocities, at a list of times or at every so many steps."""
+    section_forces: Annotated[tuple[Text, ...], Field(examples=["[midspan]"])] = ()
+    """Sensors at which moment, shear, normal force and torsion of the beams are recorded."""
+    envelopes: Annotated[tuple[Annotated[str, OneOf(ENVELOPES)], ...], Field(examples=["[moment, shear]"])] = ()
+    """Quantities whose extremes along the running line are recorded."""
+
+    @model_validator(mode="after")
+    def _named(self) -> Self:
+        faults = []
+        for number, name in enumerate(self.section_forces):
+            if name not in self.sensors:
+                near = nearest(name, self.sensors)
+                known = f"Sensors are {listed(self.sensors)}" if self.sensors else "Add it to the sensors"
+                fix = f"Did you mean {near}?" if near else known
+                faults.append(InputError("no such sensor", field=f"section_forces.{number}", fix=fix))
+        for key, names in (("section_forces", self.section_forces), ("envelopes", self.envelopes)):
+            for number, name in enumerate(names):
+                if name in names[:number]:
+                    faults.append(InputError("is named twice", field=f"{key}.{number}"))
+        if faults:
+            raise InputErrors(faults)
+        return self
