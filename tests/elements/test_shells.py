@@ -109,7 +109,7 @@ def test_numbering_may_start_at_any_node(kind, x):
 def test_an_offset_is_a_rigid_link_to_the_mid_surface(kind, x):
     normal = shells.resultants(kind, x[None], STEEL, 0.1, np.zeros((1, 6 * len(x)))).axes[0, 2]
     lever = np.cross(np.eye(3), 0.25 * normal).T  # θ × d n as a matrix on θ
-    link = np.kron(np.eye(len(x)), np.block([[np.eye(3), lever.T.T], [np.zeros((3, 3)), np.eye(3)]]))
+    link = np.kron(np.eye(len(x)), np.block([[np.eye(3), lever], [np.zeros((3, 3)), np.eye(3)]]))
     plain = shells.stiffness(kind, (x + 0.25 * normal)[None], STEEL, 0.1)[0]
     expected = link.T @ plain @ link
     offset = shells.stiffness(kind, x[None], STEEL, 0.1, 0.25)[0]

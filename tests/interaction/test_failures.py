@@ -246,7 +246,7 @@ class TestNotes:
     def test_defaults_are_told(self):
         assert self.notes(MASS) == ""
         assert "alpha = -0.1 by default, because wheels have mass" in self.notes(self.WHEEL)
-        assert "footprint of 0.75 m by default" in self.notes(self.WHEEL)
+        assert "footprint of 0.5 m by default" in self.notes(self.WHEEL)
         told = self.notes(self.DASHPOT)
         assert "because a dashpot ends at a massless contact point" in told
         assert "footprint" not in told

@@ -144,7 +144,7 @@ def test_wheels_with_mass():
             assert worst < 0.003 * 6250.0 * 9.81
     assert fine.contact_force.max() == pytest.approx(coarse.contact_force.max(), rel=0.02)
     assert coarse.facts["alpha"] == -0.1
-    assert coarse.facts["footprint"] == pytest.approx(0.75)
+    assert coarse.facts["footprint"] == pytest.approx(0.5)
 
 
 @pytest.mark.parametrize("method", [Alpha(0.0), Alpha(-0.1)])

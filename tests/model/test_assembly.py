@@ -12,6 +12,7 @@ from axlespan.elements.beam import BeamProperties
 from axlespan.model import assembly
 from axlespan.model.assembly import assemble, element_dofs
 from axlespan.model.compile import compile_model, dof_table
+from axlespan.model.dofs import DofTable
 from axlespan.model.from_mesh import Beams, Planes, Shells, Solids
 from axlespan.model.materials import BeamSection, Material
 from axlespan.model.mesh import Mesh
@@ -104,6 +105,19 @@ def test_the_pattern_follows_the_topology_not_the_numbers():
     assert patterns[0] == patterns[1]
     # Six nodes of two d.o.f.; the middle two see all six, the corners four.
     assert len(patterns[0][0]) == 2 * 2 * (2 * 6 + 4 * 4)
+
+
+def test_nodes_may_be_numbered_in_any_order(mixed):
+    model, table, (stiffness, _, _) = mixed
+    order = np.random.default_rng(6).permutation(len(model.points))
+    other = DofTable.of_active(table.number >= 0, order)
+    again = assemble(model.parts, model.points, other)[0]
+    assert again.has_canonical_format
+    place = np.empty(table.size, dtype=np.int64)
+    place[table.number[table.number >= 0]] = other.number[other.number >= 0]
+    moved = again.toarray()[np.ix_(place, place)]
+    scale = np.abs(stiffness.data).max()
+    np.testing.assert_allclose(moved, stiffness.toarray(), rtol=0, atol=1e-15 * scale)
 
 
 def test_a_shared_pattern_cannot_be_spoiled(mixed):

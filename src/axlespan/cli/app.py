@@ -48,11 +48,14 @@ def run(
         bool, typer.Option("--force", help="Replace the results in an existing folder.")
     ] = False,
     figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw figures.")] = True,
+    paraview: Annotated[
+        bool, typer.Option("--paraview", help="Write fields.pvd: structure and wheels over time, for ParaView.")
+    ] = False,
 ) -> None:
     """Simulate a case: writes result.nc, summary.json and figures."""
     from axlespan.cli.run import run_case
 
-    raise typer.Exit(run_case(case, output, force=force, figures=figures))
+    raise typer.Exit(run_case(case, output, force=force, figures=figures, paraview=paraview))
 
 
 @app.command()
@@ -61,6 +64,23 @@ def check(case: _CASE) -> None:
     from axlespan.cli.check import check_case
 
     raise typer.Exit(check_case(case))
+
+
+@app.command()
+def modes(
+    case: _CASE,
+    number: Annotated[
+        int | None, typer.Option("-n", "--number", min=1, help="Number of modes; 10, or all if there are fewer.")
+    ] = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Folder for modes.json and figures of the shapes.")
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace what an existing folder holds.")] = False,
+) -> None:
+    """Natural frequencies of a case's structure, participation factors and effective masses."""
+    from axlespan.cli.modes import show_modes
+
+    raise typer.Exit(show_modes(case, number, output, force=force))
 
 
 @app.command()

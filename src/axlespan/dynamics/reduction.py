@@ -26,18 +26,21 @@ from axlespan.linalg.factor import Factor, factorize
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
+# Static shapes are nearly all kept: they hold the local deformation under a wheel.
+_STATIC_CUTOFF = 1e-6
+
 # Right-hand sides that are solved for together.
 _BLOCK = 64
 
 
 @dataclass(frozen=True, eq=False)
 class ReducedBasis:
-    """Shapes V and their circular frequencies, and the static shapes of the path that estimate its error."""
+    """Shapes V and their circular frequencies, with the factor of K that estimates its error."""
 
     vectors: FloatArray  # V (n, m) [kg^-1/2]
     angular_frequencies: FloatArray  # ω (m,) [rad/s]
     path_dofs: IntArray  # (n_path,)
-    static_shapes: FloatArray  # K⁻¹ Rᵀ (n, n_path) [m/N]
+    static_factor: Factor  # of K, for the estimate of the error
 
     @property
     def size(self) -> int:
@@ -47,7 +50,7 @@ class ReducedBasis:
     @property
     def nbytes(self) -> int:
         """Memory [byte]."""
-        return int(self.vectors.nbytes + self.static_shapes.nbytes)
+        return int(self.vectors.nbytes + self.static_factor.nbytes)
 
 
 def reduced_basis(
@@ -58,6 +61,7 @@ def reduced_basis(
     blocks: int = 3,
     cutoff: float = 1e-5,
     modes: int = 0,
+    extra: FloatArray | None = None,
     solver: str = "auto",
 ) -> ReducedBasis:
     """Build a basis.
@@ -74,6 +78,9 @@ def reduced_basis(
         Shapes whose share of a block's strain energy is below the square of this are left out.
     modes : int
         Modes by shift-invert Lanczos that are added.
+    extra : array (n, k), optional
+        Further shapes to hold exactly. The rigid translations of all free d.o.f. make the sum of reactions,
+        loads and inertia right.
     solver : str
         Kind of factor of K.
 
@@ -90,7 +97,7 @@ def reduced_basis(
     loads = np.zeros((K.shape[0], len(path_dofs)))
     loads[path_dofs, np.arange(len(path_dofs))] = 1.0
     static = _solved(factor, loads)
-    basis = _compressed(static, K, None, cutoff)
+    basis = _compressed(static, K, None, _STATIC_CUTOFF)
     latest = basis
     for _ in range(blocks - 1):
         latest = _compressed(_solved(factor, np.asarray(M @ latest)), K, basis, cutoff)
@@ -100,9 +107,11 @@ def reduced_basis(
     if modes:
         extra = _compressed(lowest_modes(K, M, modes, kind=solver).shapes, K, basis, 1e-8)
         basis = np.hstack([basis, extra])
+    if extra is not None and extra.size:
+        basis = np.hstack([basis, _compressed(extra, K, basis, 1e-8)])
     squares, turn = sl.eigh(basis.T @ np.asarray(K @ basis), basis.T @ np.asarray(M @ basis))
     return ReducedBasis(
-        np.ascontiguousarray(basis @ turn), np.sqrt(np.maximum(squares, 0.0)), np.asarray(path_dofs), static
+        np.ascontiguousarray(basis @ turn), np.sqrt(np.maximum(squares, 0.0)), np.asarray(path_dofs), factor
     )
 
 

@@ -39,7 +39,7 @@ class FlatGeometry:
     @property
     def node_count(self) -> int:
         """Nodes per element."""
-        return self.plane.shape[1]
+        return int(self.plane.shape[1])
 
     @cached_property
     def sides(self) -> FloatArray:
@@ -148,6 +148,20 @@ def per_element(value: npt.ArrayLike, n_e: int, field: str) -> FloatArray:
     if not np.all(np.isfinite(array)):
         raise InputError("must be finite", field=field, value=value)
     return np.broadcast_to(array, (n_e,))
+
+
+def per_side(flags: npt.ArrayLike, n_e: int) -> npt.NDArray[np.bool_]:
+    """Return flags (n_e, 3) of the sides of triangles, from one for all or one for each.
+
+    Raises
+    ------
+    InputError
+        If the shape is another.
+    """
+    array = np.asarray(flags, dtype=bool)
+    if array.ndim and array.shape != (n_e, 3):
+        raise InputError(f"must be one flag or have the shape ({n_e}, 3)", field="mixed", value=array.shape)
+    return np.broadcast_to(array, (n_e, 3))
 
 
 def link_matrices(geometry: FlatGeometry, offset: npt.ArrayLike = 0.0) -> tuple[FloatArray, FloatArray]:

@@ -22,9 +22,6 @@ FloatArray = npt.NDArray[np.float64]
 
 #: number of bending modes to the degree 1 and 2.
 LINEAR, QUADRATIC = 9, 17
-#: factor on the sides' shear flexibility 12 D/(S L²). Cylindrical bending is exact with any; in torsion the
-#: sides shear over a depth of the order of the thickness, and only when longer than about 8 t they bend.
-SIDE_RELAXATION = 20.0
 
 _GAUSS, _WEIGHT = np.polynomial.legendre.leggauss(3)
 
@@ -65,7 +62,8 @@ def membrane_parameters(
     at, weight = _area_points(geometry)
     table = membrane_modes(geometry, at)[..., :count]
     work = _membrane_work(geometry)[:, :count]
-    return _solved(table, weight, np.linalg.inv(section.membrane), work)
+    flexibility = np.asarray(np.linalg.inv(section.membrane), dtype=np.float64)
+    return _solved(table, weight, flexibility, work)
 
 
 def bending_parameters(
@@ -137,8 +135,7 @@ def _bending_work(geometry: FlatGeometry, section: ShellSection, count: int) -> 
     """G (n_e, count, 3 n_node)."""
     n_e, n = geometry.height.shape
     length = geometry.lengths[..., None]
-    bend = shell_sides.mismatch(geometry)
-    bend /= 1.0 + SIDE_RELAXATION * shell_sides.side_flexibility(geometry, section)[..., None]
+    bend = shell_sides.bending_mismatch(geometry, section)
     arch = length * shell_sides.arch(geometry)
     axes = shell_sides.slope_axes(geometry)
     near, far = np.arange(n), (np.arange(n) + 1) % n

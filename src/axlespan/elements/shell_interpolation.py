@@ -48,10 +48,10 @@ def plane_rows(geometry: FlatGeometry, natural: FloatArray) -> tuple[FloatArray,
     membrane[:, :, 0, :, 0] = membrane[:, :, 1, :, 1] = value
     bulge = np.einsum("eps,esi->epis", arched, left)
     membrane[..., 2] = bulge - np.roll(bulge, 1, axis=3)
-    bending = np.zeros((n_e, n_point, 3, n, 3))
+    nodal = np.zeros((n_e, n_point, 3, n, 3))
     for row in range(3):
-        bending[:, :, row, :, row] = value
-    bending = bending.reshape(n_e, n_point, 3, 3 * n)
+        nodal[:, :, row, :, row] = value
+    bending = nodal.reshape(n_e, n_point, 3, 3 * n)
     bending[:, :, 0] += arched @ (geometry.lengths[..., None] * shell_sides.arch(geometry))
     return membrane.reshape(n_e, n_point, 2, 3 * n), bending
 
@@ -97,4 +97,5 @@ def interpolation(
     back = (height - reach[:, None])[..., None]
     rows[:, :, 0] += back * turn[:, :, 1]
     rows[:, :, 1] -= back * turn[:, :, 0]
-    return geometry.axes.transpose(0, 2, 1)[:, None] @ rows
+    in_space: FloatArray = geometry.axes.transpose(0, 2, 1)[:, None] @ rows
+    return in_space

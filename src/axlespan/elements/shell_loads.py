@@ -125,7 +125,8 @@ def _surface_load(geometry: FlatGeometry, load: FloatArray, offset: FloatArray) 
     plate = np.einsum("ep,e,epd->ed", weight, local[:, 2], bending[:, :, 0], optimize=True)
     to_membrane, to_bending = link_matrices(geometry, offset)
     nodal: FloatArray = np.einsum("ed,edf->ef", plane, to_membrane)
-    return nodal + np.einsum("ed,edf->ef", plate, to_bending)
+    nodal += np.einsum("ed,edf->ef", plate, to_bending)
+    return nodal
 
 
 def _weighted_product(rows: FloatArray, weight: FloatArray) -> FloatArray:

@@ -8,7 +8,14 @@ import numpy as np
 import numpy.typing as npt
 
 from axlespan.elements import shell_hybrid, shell_quadrilateral, shell_triangle
-from axlespan.elements.shell_geometry import FlatGeometry, ShellKind, link_matrices, per_element, prepared
+from axlespan.elements.shell_geometry import (
+    FlatGeometry,
+    ShellKind,
+    link_matrices,
+    per_element,
+    per_side,
+    prepared,
+)
 from axlespan.elements.shell_material import ShellMaterial, ShellSection, section
 from axlespan.elements.shell_shapes import shapes
 from axlespan.errors import InputError
@@ -66,12 +73,13 @@ def resultants(
     offset: npt.ArrayLike = 0.0,
     turning: npt.ArrayLike = 0.0,
     natural: npt.ArrayLike | None = None,
+    mixed: npt.ArrayLike = False,
 ) -> ShellResultants:
     """Normal forces, moments and shear forces at points of the elements.
 
     Parameters
     ----------
-    kind, coordinates, material, thickness, offset, turning
+    kind, coordinates, material, thickness, offset, turning, mixed
         As in `axlespan.elements.shells.stiffness`.
     displacements : array (n_e, 6 n_node)
         Nodal displacements [m, rad].
@@ -99,7 +107,8 @@ def resultants(
     if kind == "shell4":
         n, m, q = _of_quadrilaterals(geometry, cut, delta, at, in_plane, across)
     else:
-        n, m, q = _of_triangles(geometry, cut, delta, where, in_plane, across)
+        sides = per_side(mixed, len(t))
+        n, m, q = _of_triangles(geometry, cut, delta, sides, where, in_plane, across)
     return ShellResultants(n, m, q, geometry.axes, geometry.center[:, None] + at @ geometry.axes[:, :2])
 
 
@@ -123,12 +132,13 @@ def _of_triangles(
     geometry: FlatGeometry,
     cut: ShellSection,
     turning: FloatArray,
+    mixed: npt.NDArray[np.bool_],
     natural: FloatArray,
     in_plane: FloatArray,
     across: FloatArray,
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Section stiffness times strains at natural points; for bending those of the discrete plate alone."""
-    strain = shell_triangle.membrane_strain(geometry, cut, turning, natural) @ in_plane[:, None]
+    strain = shell_triangle.membrane_strain(geometry, cut, turning, mixed, natural) @ in_plane[:, None]
     curvature = shell_triangle.curvature(geometry, cut, natural) @ across[:, None]
     shear = shell_triangle.shear_strain(geometry, cut, natural) @ across[:, None]
     forces, moments, cross = (

@@ -32,7 +32,8 @@ def shapes(node_count: int, natural: FloatArray) -> FloatArray:
     """Values (..., n_node) of the nodes' functions at natural points (..., 2)."""
     r, s = natural[..., :1], natural[..., 1:]
     if node_count == 4:
-        return 0.25 * (1.0 + r * _CORNERS[:, 0]) * (1.0 + s * _CORNERS[:, 1])
+        corner: FloatArray = 0.25 * (1.0 + r * _CORNERS[:, 0]) * (1.0 + s * _CORNERS[:, 1])
+        return corner
     return np.concatenate([1.0 - r - s, r, s], axis=-1)
 
 

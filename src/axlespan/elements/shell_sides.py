@@ -7,7 +7,8 @@ from node i to node j of length L, with ξ in [-1, 1] and the slope β = dw/ds t
     w = linear + L (1 - ξ²)/8 (β_i - β_j) + L (ξ - ξ³)/4 g'
     β = linear + 3 (1 - ξ²)/2 g',    g' = g/(1 + φ_s),    g = (w_j - w_i)/L - (β_i + β_j)/2
 
-The mismatch g splits into bending g' and shear γ = φ_s g' by the flexibility φ_s = 12 D/(S L²).
+The mismatch g splits into bending g' and shear γ = φ_s g' by the flexibility φ_s = 12 D/(S L²). What
+neighbors share, and with it constant moments work, takes φ_s `RELAXATION` times.
 """
 
 from __future__ import annotations
@@ -19,6 +20,10 @@ from axlespan.elements.shell_geometry import FlatGeometry
 from axlespan.elements.shell_material import ShellSection
 
 FloatArray = npt.NDArray[np.float64]
+
+#: factor on φ_s. Cylindrical bending is exact with any; in torsion the sides shear over a depth of the order
+#: of the thickness, and only when longer than about 8 t they bend.
+RELAXATION = 20.0
 
 
 def side_flexibility(geometry: FlatGeometry, section: ShellSection) -> FloatArray:
@@ -56,6 +61,11 @@ def mismatch(geometry: FlatGeometry) -> FloatArray:
     rows[:, near, near, 0], rows[:, near, far, 0] = -1.0 / geometry.lengths, 1.0 / geometry.lengths
     rows[:, near, near, 1:] = rows[:, near, far, 1:] = -0.5 * axes
     return rows.reshape(n_e, n, 3 * n)
+
+
+def bending_mismatch(geometry: FlatGeometry, section: ShellSection) -> FloatArray:
+    """Rows of g' (n_e, n_side, 3 n_node) per bending d.o.f., with the relaxed φ_s."""
+    return mismatch(geometry) / (1.0 + RELAXATION * side_flexibility(geometry, section)[..., None])
 
 
 def mean_drilling(geometry: FlatGeometry) -> FloatArray:

@@ -21,6 +21,7 @@ from axlespan.elements.shell_material import ShellSection
 from axlespan.elements.shell_shapes import shape_slopes, shapes
 
 FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
 
 #: α_b, share of the drilling rotations in the mean strain.
 BASIC = 1.5
@@ -29,7 +30,7 @@ LEAST_HIGHER_ORDER = 0.01
 #: fading of the drilling rotations' part in the mean strain and of β_0, on curved surfaces.
 BASIC_FADING, HIGHER_ORDER_FADING = 4.0, 64.0
 #: share of the discrete Kirchhoff-Mindlin plate in the bending stiffness, the rest is the hybrid one's.
-DISCRETE_SHARE = 0.87
+DISCRETE_SHARE = 0.8
 # [corner, side, node]: natural strains that a hierarchical rotation gives, Felippa's β_1 ... β_9 permuted
 _CORNER_STRAINS = np.array(
     [
@@ -42,9 +43,11 @@ _CORNER_STRAINS = np.array(
 _MIDDLES = np.array([[0.5, 0.0], [0.5, 0.5], [0.0, 0.5]])
 
 
-def membrane_stiffness(geometry: FlatGeometry, section: ShellSection, turning: FloatArray) -> FloatArray:
+def membrane_stiffness(
+    geometry: FlatGeometry, section: ShellSection, turning: FloatArray, mixed: BoolArray
+) -> FloatArray:
     """Stiffness (n_e, 9, 9) per d.o.f. (u, v, φ of each node)."""
-    strain = membrane_strain(geometry, section, turning, _MIDDLES)
+    strain = membrane_strain(geometry, section, turning, mixed, _MIDDLES)
     return _energy(strain, section.membrane, geometry.area)
 
 
@@ -57,25 +60,31 @@ def bending_stiffness(geometry: FlatGeometry, section: ShellSection) -> FloatArr
 
 
 def membrane_strain(
-    geometry: FlatGeometry, section: ShellSection, turning: FloatArray, natural: FloatArray
+    geometry: FlatGeometry,
+    section: ShellSection,
+    turning: FloatArray,
+    mixed: BoolArray,
+    natural: FloatArray,
 ) -> FloatArray:
     """ε_x, ε_y, γ_xy (n_e, n_point, 3, 9) at natural points: mean and higher-order part.
 
     Facets of a curved surface see drilling rotations that don't strain the surface. Where it turns by the
     angle δ from the element's plane to its sides, λ = δ √(2A)/t, the mean strain's share α_b fades by
     1/(1 + 4 λ²) and β_0 by 1/(1 + 64 λ²), towards the constant strain triangle.
+
+    On sides that are mixed (n_e, 3), shared with quadrilaterals, α_b is 1 as it is there.
     """
     n_e, area = len(geometry.area), geometry.area[:, None, None]
-    next_side, last_side = geometry.sides, np.roll(geometry.sides, 1, axis=1)
     away = np.roll(geometry.sides, -1, axis=1)  # the side opposite to each node
     bent = 2.0 * geometry.area * (turning / section.thickness) ** 2
-    basic = (BASIC / (1.0 + BASIC_FADING * bent))[:, None]
+    # mean strain of a side's arch (φ_i - φ_j)/8 in the plane, which the drilling rotations of its ends share
+    dx, dy = geometry.sides[..., 0], geometry.sides[..., 1]
+    share = np.where(mixed, 1.0, BASIC) / (1.0 + BASIC_FADING * bent)[:, None]
+    bulge = share * np.stack([-(dy**2), -(dx**2), 2.0 * dx * dy]) / 6.0
     mean = np.zeros((n_e, 3, 3, 3))
     mean[:, 0, :, 0] = mean[:, 2, :, 1] = -away[..., 1]
     mean[:, 1, :, 1] = mean[:, 2, :, 0] = away[..., 0]
-    mean[:, 0, :, 2] = basic / 6.0 * away[..., 1] * (next_side[..., 1] - last_side[..., 1])
-    mean[:, 1, :, 2] = basic / 6.0 * away[..., 0] * (next_side[..., 0] - last_side[..., 0])
-    mean[:, 2, :, 2] = basic / 3.0 * (next_side.prod(axis=-1) - last_side.prod(axis=-1))
+    mean[..., 2] = (bulge - np.roll(bulge, 1, axis=2)).transpose(1, 0, 2)
 
     # rotations above that of the constant strain triangle
     above = np.zeros((n_e, 3, 3, 3))
@@ -90,7 +99,8 @@ def membrane_strain(
     factor = higher_order_factor(section) / (1.0 + HIGHER_ORDER_FADING * bent)
     scale = 1.5 * np.sqrt(factor)[:, None, None] / (6.0 * area)
     higher = (scale * cartesian)[:, None] @ natural_strain @ above.reshape(n_e, 1, 3, 9)
-    return mean.reshape(n_e, 1, 3, 9) / (2.0 * area[..., None]) + higher
+    strain: FloatArray = mean.reshape(n_e, 1, 3, 9) / (2.0 * area[..., None]) + higher
+    return strain
 
 
 def higher_order_factor(section: ShellSection) -> FloatArray:
@@ -107,25 +117,30 @@ def higher_order_factor(section: ShellSection) -> FloatArray:
 
 
 def curvature(geometry: FlatGeometry, section: ShellSection, natural: FloatArray) -> FloatArray:
-    """κ_x = θ_y,x, κ_y = -θ_x,y, κ_xy = θ_y,y - θ_x,x (n_e, n_point, 3, 9) at natural points."""
+    """κ_x = θ_y,x, κ_y = -θ_x,y, κ_xy = θ_y,y - θ_x,x (n_e, n_point, 3, 9) at natural points.
+
+    The means are those of sides with a relaxed flexibility, as in the hybrid elements.
+    """
+    n_e, n_point = len(geometry.area), len(natural)
     value, slope = shapes(3, natural), shape_slopes(3, natural)
-    jacobian = np.einsum("apn,eni->epai", slope, geometry.plane)
-    bubble_slope = 4.0 * (slope * np.roll(value, -1, axis=1) + value * np.roll(slope, -1, axis=2))
-    inverse = np.linalg.inv(jacobian)
-    nodes = np.einsum("epia,apn->epin", inverse, slope)
-    sides = np.einsum("epia,aps->epis", inverse, bubble_slope)
-    n_e, n_point = jacobian.shape[:2]
-    rows = np.zeros((n_e, n_point, 3, 3, 3))
-    rows[..., 0, :, 2], rows[..., 1, :, 1] = nodes[..., 0, :], -nodes[..., 1, :]
-    rows[..., 2, :, 2], rows[..., 2, :, 1] = nodes[..., 1, :], -nodes[..., 0, :]
-    bend = shell_sides.mismatch(geometry)
-    bend /= 1.0 + shell_sides.side_flexibility(geometry, section)[..., None]
-    turn = 1.5 * shell_sides.slope_axes(geometry)[:, None]  # (n_e, 1, side, xy)
-    x, y = sides[..., 0, :], sides[..., 1, :]
-    arched = np.stack(
-        [x * turn[..., 1], -y * turn[..., 0], y * turn[..., 1] - x * turn[..., 0]], axis=2
-    )  # (n_e, n_point, 3, side)
-    return rows.reshape(n_e, n_point, 3, 9) + arched @ bend[:, None]
+    inverse = np.linalg.inv(np.einsum("an,eni->eai", slope[:, 0], geometry.plane))
+    x, y = (inverse @ slope[:, 0]).transpose(1, 0, 2)  # slopes of the nodes' functions
+    nodal = np.zeros((n_e, 3, 3, 3))
+    nodal[:, 0, :, 2], nodal[:, 1, :, 1] = x, -y
+    nodal[:, 2, :, 2], nodal[:, 2, :, 1] = y, -x
+
+    # the sides' arches of slope, 3/2 (1 - ξ²) g' about the axes a
+    bubble = 4.0 * (slope * np.roll(value, -1, axis=1) + value * np.roll(slope, -1, axis=2))
+    x, y = np.einsum("eia,aps->ieps", inverse, bubble)
+    a_x, a_y = 1.5 * shell_sides.slope_axes(geometry)[:, None].transpose(3, 0, 1, 2)
+    arched = np.stack([x * a_y, -y * a_x, y * a_y - x * a_x], axis=2)
+    dx, dy = geometry.sides[..., 0], geometry.sides[..., 1]
+    mean = np.stack([-dx * dy, dx * dy, dx**2 - dy**2], axis=1)[:, None]
+    mean = mean / (geometry.lengths * geometry.area[:, None])[:, None, None]
+    bend = shell_sides.mismatch(geometry) / (1.0 + shell_sides.side_flexibility(geometry, section)[..., None])
+    shared = shell_sides.bending_mismatch(geometry, section)
+    rows: FloatArray = nodal.reshape(n_e, 1, 3, 9) + (arched - mean) @ bend[:, None] + mean @ shared[:, None]
+    return rows
 
 
 def shear_strain(geometry: FlatGeometry, section: ShellSection, natural: FloatArray) -> FloatArray:
@@ -135,7 +150,8 @@ def shear_strain(geometry: FlatGeometry, section: ShellSection, natural: FloatAr
     unit = geometry.sides / geometry.lengths[..., None]
     pair = np.stack([np.roll(unit, 1, axis=1), unit], axis=2)  # (n_e, node, side, xy)
     corner = np.linalg.solve(pair, np.stack([np.roll(along, 1, axis=1), along], axis=2))
-    return np.einsum("pn,enid->epid", shapes(3, natural), corner)
+    strain: FloatArray = np.einsum("pn,enid->epid", shapes(3, natural), corner)
+    return strain
 
 
 def _energy(strain: FloatArray, stiffness: FloatArray, area: FloatArray) -> FloatArray:

@@ -1,4 +1,4 @@
-"""How far a curved surface turns away from the flat elements that approximate it."""
+"""What shell elements need to know of their neighbors: a surface that turns away, sides of the other kind."""
 
 from __future__ import annotations
 
@@ -66,6 +66,31 @@ def surface_turning(
     turning = _largest_turn(normals, element, ends, np.radians(crease))
     parts = np.split(turning, np.cumsum(counts)[:-1])
     return dict(zip(tables, parts, strict=True))
+
+
+def mixed_sides(triangles: npt.ArrayLike, quadrilaterals: npt.ArrayLike) -> npt.NDArray[np.bool_]:
+    """Sides (n_e, 3) of triangles that a quadrilateral shares, for `stiffness`.
+
+    Parameters
+    ----------
+    triangles, quadrilaterals : array (n_e, 3), (n, 4)
+        Nodes of the elements; side k runs from node k to the next.
+
+    Examples
+    --------
+    >>> mixed_sides([[1, 4, 2]], [[0, 1, 2, 3]])
+    array([[False, False,  True]])
+    """
+    three, four = (
+        np.sort(np.stack([table, np.roll(table, -1, axis=1)], axis=2), axis=2).reshape(-1, 2)
+        for table in (
+            np.asarray(triangles, dtype=np.int64).reshape(-1, 3),
+            np.asarray(quadrilaterals, dtype=np.int64).reshape(-1, 4),
+        )
+    )
+    _, label = np.unique(np.concatenate([three, four]), axis=0, return_inverse=True)
+    label = label.ravel()
+    return np.isin(label[: len(three)], label[len(three) :]).reshape(-1, 3)
 
 
 def _largest_turn(normals: FloatArray, element: IntArray, ends: IntArray, crease: float) -> FloatArray:

@@ -12,12 +12,19 @@ import numpy.typing as npt
 
 from axlespan.elements import shell_quadrilateral, shell_triangle
 from axlespan.elements.shell_checks import ShapeFaults, check_geometry
-from axlespan.elements.shell_geometry import ShellKind, flatten, link_matrices, per_element, prepared
+from axlespan.elements.shell_geometry import (
+    ShellKind,
+    flatten,
+    link_matrices,
+    per_element,
+    per_side,
+    prepared,
+)
 from axlespan.elements.shell_interpolation import interpolation
 from axlespan.elements.shell_loads import body_force, mass, surface_pressure
 from axlespan.elements.shell_material import ShellMaterial, section
 from axlespan.elements.shell_resultants import ShellResultants, resultants
-from axlespan.elements.shell_turning import surface_turning
+from axlespan.elements.shell_turning import mixed_sides, surface_turning
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -31,6 +38,7 @@ __all__ = [
     "check_geometry",
     "interpolation",
     "mass",
+    "mixed_sides",
     "resultants",
     "stiffness",
     "surface_pressure",
@@ -45,6 +53,7 @@ def stiffness(
     thickness: npt.ArrayLike,
     offset: npt.ArrayLike = 0.0,
     turning: npt.ArrayLike = 0.0,
+    mixed: npt.ArrayLike = False,
 ) -> FloatArray:
     """Stiffness matrices (n_e, 6 n_node, 6 n_node) [N/m, N, N m].
 
@@ -62,6 +71,9 @@ def stiffness(
         Angle by which a curved surface turns from the element's plane to its sides, from
         `surface_turning` [rad]. With 0, right for plates and folded plates, coarse meshes of doubly curved
         shells are too stiff, those of triangles above all.
+    mixed : bool or array (n_e, 3)
+        Sides of triangles that quadrilaterals share, from `mixed_sides`; of no effect on quadrilaterals.
+        Without it constant membrane strains are disturbed where the kinds meet.
 
     Raises
     ------
@@ -82,7 +94,7 @@ def stiffness(
         membrane = shell_quadrilateral.membrane_parameters(geometry, cut, delta)[1]
         bending = shell_quadrilateral.bending_parameters(geometry, cut)[1]
     else:
-        membrane = shell_triangle.membrane_stiffness(geometry, cut, delta)
+        membrane = shell_triangle.membrane_stiffness(geometry, cut, delta, per_side(mixed, len(t)))
         bending = shell_triangle.bending_stiffness(geometry, cut)
     in_plane, across = link_matrices(geometry, reach)
     matrix: FloatArray = in_plane.transpose(0, 2, 1) @ membrane @ in_plane

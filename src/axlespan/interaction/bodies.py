@@ -38,12 +38,27 @@ class PreparedStructure:
         self.integrator = Integrator(matrices, method, time_step, solver=solver)
         self.columns = PathColumns(self.integrator, path_dofs)
 
+    def body(self, states: list[State], loads: list[FloatArray]) -> StructureBody:
+        """The structure at the states of several crossings, under their Eᵀ X (n,)."""
+        return StructureBody(self, states, loads)
+
+    def project(self, vectors: FloatArray) -> FloatArray:
+        """Forces (n,) or (n, k) in the coordinates of the state."""
+        return vectors
+
+    def reading(self, dofs: IntArray) -> FloatArray | None:
+        """How displacements of d.o.f. follow from the coordinates of the state; None: they are among them."""
+        return None
+
 
 class StructureBody:
     """The structure in time, under the wheels of ``lanes`` crossings."""
 
     def __init__(
-        self, prepared: PreparedStructure, states: list[State], path_loads: list[FloatArray]
+        self,
+        prepared: PreparedStructure,
+        states: list[State],
+        path_loads: list[FloatArray],
     ) -> None:
         self.integrator, self.columns = prepared.integrator, prepared.columns
         self.lanes = len(states)
@@ -53,7 +68,7 @@ class StructureBody:
         n = self.integrator.size
         self._shape = (n,) if single else (n, self.lanes)
         # Eᵀ X of the step before, on the d.o.f. that were held then.
-        self._loaded = np.arange(n)
+        self._loaded = np.arange(len(path_loads[0]))
         self._load = path_loads[0].copy() if single else np.stack(path_loads, axis=-1)
 
     @property
@@ -65,6 +80,10 @@ class StructureBody:
         """The state of one crossing; a view if it is the only one."""
         values = self.state.values
         return State(values if values.ndim == 2 else np.ascontiguousarray(values[:, :, lane]))
+
+    def full(self, lane: int) -> State:
+        """The state of one crossing in all free d.o.f."""
+        return self.lane(lane)
 
     def load_of(self, lane: int) -> FloatArray:
         """Eᵀ X (n,) of one crossing at the last completed step."""
@@ -79,13 +98,17 @@ class StructureBody:
             force[...] = 0.0
         else:
             force[...] = external if force.ndim == 1 else external[:, None]
+        self._add_loads(force, known)
+        self.stepper.predict()
+
+    def _add_loads(self, force: FloatArray, known: FloatArray | None) -> None:
+        """Add the contact loads of the step before and those known at the new time, as the alpha method weighs them."""
         if self.integrator.weight_p:
             force[self._loaded] -= self.integrator.weight_p * self._load
         if known is not None:
             force[self.columns.held] -= self.integrator.weight_c * known
-        self.stepper.predict()
 
-    def gather(self, flat: IntArray, weights: FloatArray) -> FloatArray:
+    def gather(self, flat: IntArray, held: IntArray, weights: FloatArray) -> FloatArray:
         """Displacements E u (n_wheel,) at the new time as far as known, for rows (n_wheel, n_local)."""
         values = self.stepper.displacement(flat)
         values *= weights
@@ -104,13 +127,17 @@ class StructureBody:
         """Take the loads (n_held, …) of the coupled wheels, and complete the step; known loads are in already."""
         self._loaded = self.columns.held
         if coupled is not None:
-            self.stepper.add(self.columns.response(coupled))
+            self.stepper.add(self._response(coupled))
         if coupled is None or known is None:
             given = coupled if coupled is not None else known
             self._load = given if given is not None else np.zeros((len(self._loaded), *self._shape[1:]))
         else:
             self._load = coupled + known
         self.stepper.finish()
+
+    def _response(self, load: FloatArray) -> FloatArray:
+        """Acceleration under the loads (n_held, …) of the coupled wheels at the new time."""
+        return self.columns.response(load)
 
     def take_solved(self, coupled: FloatArray, known: FloatArray | None) -> None:
         """Complete the step when the response to the coupled wheels is in the acceleration already."""

@@ -62,8 +62,9 @@ class Convoy:
         self.plans = plans
         settings = plans[0].settings
         self.forces = plans[0].forces  # external forces on the structure, the same for all
-        self.structure = StructureBody(
-            prepared, [lane.structure for lane in lanes], [lane.load for lane in lanes]
+        self.vectors = prepared.project(self.forces.vectors)
+        self.structure: StructureBody = prepared.body(
+            [lane.structure for lane in lanes], [lane.load for lane in lanes]
         )
         fleets = [plan.fleet for plan in plans]
         self.joint: Fleet = joined(fleets)
@@ -76,7 +77,8 @@ class Convoy:
             forces = np.concatenate([lane.forces for lane in lanes])[self.joint.coupled]
             self.fleet = FleetBody(self.joint, settings.method, settings.time_step, State(values), forces)
         dofs = np.unique(np.concatenate([lane.recorder.selected for lane in lanes]))
-        watched = Watched(dofs, lanes[0].recorder.balance.sums)
+        sums = [(prepared.project(vector), which) for vector, which in lanes[0].recorder.balance.sums]
+        watched = Watched(dofs, prepared.reading(dofs), sums)
         self.tape = Tape(watched, len(lanes), self.joint.matrices.size, len(self.joint.weight))
 
     def stretch(self, *, systems: bool = True) -> Stretch:
@@ -110,14 +112,14 @@ class Convoy:
         """Structure, vehicles, Eᵀ X (n,) and contact forces (n_coupled,) of one lane at the last completed step."""
         if self.fleet is None:
             return (
-                self.structure.lane(lane),
+                self.structure.full(lane),
                 State(np.zeros((3, 0))),
                 self.structure.load_of(lane),
                 np.zeros(0),
             )
         vehicles = State(self.fleet.state.values[:, self.vehicle_dofs[lane]])
         return (
-            self.structure.lane(lane),
+            self.structure.full(lane),
             vehicles,
             self.structure.load_of(lane),
             self.fleet.forces[self.coupled[lane]],
@@ -128,7 +130,7 @@ class Convoy:
         assert self.fleet is not None
         line = stretch.gap[k].copy()
         if len(stretch.into):
-            line[stretch.into] += self.structure.gather(stretch.flat[k], stretch.weights[k])
+            line[stretch.into] += self.structure.gather(stretch.flat[k], stretch.held[k], stretch.weights[k])
         return self.fleet.at_wheels()[self.coupled[lane]], line[self.coupled[lane]]
 
     def count(self, what: str, number: int) -> None:

@@ -36,7 +36,7 @@ class IterativeCoupling:
         """
         structure, fleet = convoy.structure, convoy.fleet
         known = convoy.known_load(stretch, k)
-        structure.predict(None if external is None else convoy.forces.vectors @ external, known)
+        structure.predict(None if external is None else convoy.vectors @ external, known)
         if fleet is None:
             structure.take(None, known)
             return convoy.joint.weight
@@ -68,7 +68,7 @@ def _converged(convoy: Convoy, led: LedFleet, stretch: Stretch, k: int) -> Float
         structure.stepper.acceleration[...] = free + structure.integrator.factor.solve(force, out=force)
         line = stretch.gap[k].copy()
         if len(into):
-            line[into] += structure.gather(flat, weights)
+            line[into] += structure.gather(flat, held, weights)
         wanted = led.forces(line)
         residual = float(np.abs(wanted - forces).max())
         if residual <= limit or not len(into):

@@ -33,7 +33,7 @@ def couple_directly(convoy: Convoy, stretch: Stretch, k: int, external: FloatArr
     """
     structure, fleet = convoy.structure, convoy.fleet
     known = convoy.known_load(stretch, k)
-    structure.predict(None if external is None else convoy.forces.vectors @ external, known)
+    structure.predict(None if external is None else convoy.vectors @ external, known)
     if fleet is None:
         structure.take(None, known)
         return convoy.joint.weight
@@ -41,7 +41,7 @@ def couple_directly(convoy: Convoy, stretch: Stretch, k: int, external: FloatArr
     gap = stretch.gap[k] - fleet.at_wheels()
     into = stretch.into
     if len(into):
-        gap[into] += structure.gather(stretch.flat[k], stretch.weights[k])
+        gap[into] += structure.gather(stretch.flat[k], stretch.held[k], stretch.weights[k])
     forces = np.asarray(fleet.stiffness @ gap)  # wheels of vehicles that are wholly off the structure
     load = None
     if len(into):

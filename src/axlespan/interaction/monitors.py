@@ -14,8 +14,8 @@ from axlespan.running.path import PolynomialPath
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-# Steps at which the energy of a run is balanced.
-_ENERGY_SAMPLES = 128
+# Steps at which the energy of a run is balanced: many of a small model, a few of a large one.
+_ENERGY_SAMPLES, _FEWEST_SAMPLES, _SAMPLED_DOFS = 128, 8, 400_000
 
 
 # Smallest displacement [m] that a compatibility residual is related to.
@@ -201,9 +201,8 @@ class EnergyMonitor:
     def __init__(self, plan: Plan) -> None:
         self._plan = plan
         steps = plan.settings.steps
-        self._samples = set(
-            np.unique(np.linspace(1, steps, min(_ENERGY_SAMPLES, steps)).astype(int)).tolist()
-        )
+        count = max(_FEWEST_SAMPLES, min(_ENERGY_SAMPLES, _SAMPLED_DOFS // plan.structure.size))
+        self._samples = set(np.unique(np.linspace(1, steps, min(count, steps)).astype(int)).tolist())
         # A balanced step needs the one before it.
         self.steps = frozenset(self._samples | {step - 1 for step in self._samples})
         self._before: tuple[State, State, FloatArray, FloatArray] | None = None

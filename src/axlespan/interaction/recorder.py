@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -20,7 +20,7 @@ from axlespan.interaction.result import Result
 from axlespan.interaction.section_forces import SectionHistories
 from axlespan.interaction.settings import DAMPED_ALPHA
 from axlespan.interaction.tape import LaneTape
-from axlespan.interaction.watchers import Watchers
+from axlespan.interaction.watchers import Watcher, Watchers
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -45,7 +45,9 @@ class Histories:
 class Recorder:
     """Keeps histories and watches the run; handed to the march, which knows nothing of its inside."""
 
-    def __init__(self, plan: Plan, progress: Callable[[int], None] | None = None) -> None:
+    def __init__(
+        self, plan: Plan, progress: Callable[[int], None] | None = None, watchers: Sequence[Watcher] = ()
+    ) -> None:
         self.plan, self._progress = plan, progress
         self.notes: list[str] = list(plan.settings.notes)
         self.counts: dict[str, float] = {}  # of a coupling: iterations, factorizations
@@ -56,7 +58,7 @@ class Recorder:
         self.reactions = Reactions(plan)
         self.compatibility, self.energy = CompatibilityMonitor(), EnergyMonitor(plan)
         self.fields = FieldWatcher(plan)
-        self.watchers = Watchers([self.energy, self.fields])
+        self.watchers = Watchers([self.energy, self.fields, *watchers])
         self.sections, self.envelopes = SectionHistories(plan), EnvelopeMonitor(plan)
         self.balance, self.tension = BalanceMonitor(plan, self.reactions.paths), TensionMonitor(plan)
         n_sensor = len(self._sensor_dofs)
@@ -145,8 +147,8 @@ class Recorder:
         reactions = self.reactions.of(steps, values[:, :, n_sensor:], positions, tape.forces)
         self.balance.look(steps, tape.sums, reactions, positions, tape.forces)
         self.tension.look(steps, positions, tape.forces)
-        for keeper, at in zip((self.sections, self.envelopes), self._more, strict=True):
-            keeper.look(steps, tape.near[:, :, at], positions, tape.forces)
+        for look, at in zip((self.sections.look, self.envelopes.look), self._more, strict=True):
+            look(steps, tape.near[:, :, at], positions, tape.forces)
         kept = np.flatnonzero(steps % self.every == 0)
         into = steps[kept] // self.every
         h = self.histories

@@ -27,7 +27,7 @@ def couple_by_refactoring(
     """One step of a single lane, with a factorization if there are wheels on the structure."""
     structure, fleet, into = convoy.structure, convoy.fleet, stretch.into
     known = convoy.known_load(stretch, k)
-    structure.predict(None if external is None else convoy.forces.vectors @ external, known)
+    structure.predict(None if external is None else convoy.vectors @ external, known)
     if fleet is None:
         structure.take(None, known)
         return convoy.joint.weight
@@ -35,7 +35,7 @@ def couple_by_refactoring(
     gap = stretch.gap[k] - fleet.at_wheels()
     if len(into):
         _correct(convoy, stretch, k, gap)
-        gap[into] += structure.gather(stretch.flat[k], stretch.weights[k])
+        gap[into] += structure.gather(stretch.flat[k], stretch.held[k], stretch.weights[k])
         convoy.count("factorizations", 1)
     forces = np.asarray(fleet.stiffness @ gap)
     if len(into):
@@ -58,6 +58,6 @@ def _correct(convoy: Convoy, stretch: Stretch, k: int, gap: FloatArray) -> None:
     stiffness = sp.csr_array(fleet.stiffness)[into][:, into]
     condensed = sp.csr_array(body.effective + (body.weight_c * body.u_from_a) * (E.T @ stiffness @ E))
     reached = gap.copy()
-    reached[into] += structure.gather(dofs, weights)
+    reached[into] += structure.gather(dofs, stretch.held[k], weights)
     forces = np.asarray(fleet.stiffness @ reached)[into]
     structure.stepper.add(body.factor_of(condensed).solve(-body.weight_c * (E.T @ forces)))

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from axlespan.errors import InputError, Outcome
 from axlespan.interaction.envelopes import Envelopes
+from axlespan.interaction.extras import SECTION_VARIABLES, extra_coordinates, extra_variables
 from axlespan.interaction.fields import Fields
 
 if TYPE_CHECKING:
@@ -37,15 +38,6 @@ VARIABLES: dict[str, tuple[str, str, str]] = {
         "acceleration of the vehicle's degrees of freedom",
     ),
     "support_reaction": ("support", "N or N m", "force of the support on the structure"),
-}
-
-
-#: Variables that a result has for the sections asked for, in the same form.
-SECTION_VARIABLES: dict[str, tuple[str, str, str]] = {
-    "section_moment": ("section", "N m", "bending moment of the beams, sagging positive"),
-    "section_shear": ("section", "N", "shear force of the beams, dM/ds, to the right of an axle over the section"),
-    "section_normal": ("section", "N", "normal force of the beams, tension positive"),
-    "section_torsion": ("section", "N m", "torsional moment of the beams"),
 }
 
 
@@ -109,9 +101,6 @@ class Result:
         values: FloatArray = getattr(self, quantity)[:, names.index(name)]
         return values
 
-    def _variables(self) -> dict[str, tuple[str, str, str]]:
-        return VARIABLES | SECTION_VARIABLES if self.section else VARIABLES
-
     def to_xarray(self) -> xarray.Dataset:
         """The result as an xarray Dataset with the names and units of result.nc.
 
@@ -126,13 +115,19 @@ class Result:
             raise InputError(
                 "is not installed", field="xarray", fix="pip install 'axlespan[xarray]'"
             ) from error
-        variables = {
+        variables: dict[str, Any] = {
             name: (("time", dimension), getattr(self, name), {"units": unit, "long_name": meaning})
-            for name, (dimension, unit, meaning) in self._variables().items()
+            for name, (dimension, unit, meaning) in VARIABLES.items()
         }
-        dimensions = dict.fromkeys(dimension for dimension, _, _ in self._variables().values())
-        coordinates = {name: (name, np.array(getattr(self, name), dtype=object)) for name in dimensions}
-        coordinates["time"] = ("time", self.time, {"units": "s", "long_name": "time"})  # type: ignore[assignment]
+        dimensions = dict.fromkeys(dimension for dimension, _, _ in VARIABLES.values())
+        coordinates: dict[str, Any] = {
+            name: (name, np.array(getattr(self, name), dtype=object)) for name in dimensions
+        }
+        for extra, into in ((extra_variables(self), variables), (extra_coordinates(self), coordinates)):
+            for name, v in extra.items():
+                units = {"units": v.unit} if v.unit else {}
+                into[name] = (v.dimensions, v.values, {**units, "long_name": v.meaning})
+        coordinates["time"] = ("time", self.time, {"units": "s", "long_name": "time"})
         return xr.Dataset(
             variables, coordinates, {"outcome": self.outcome.code, "outcome_message": self.outcome.message}
         )

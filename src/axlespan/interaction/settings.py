@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from axlespan.dynamics.alpha import Alpha
+from axlespan.dynamics.reduction import ReducedBasis
 from axlespan.errors import InputError
 from axlespan.interaction.crossing import Crossing
 from axlespan.interaction.outputs import envelope_names, field_steps, section_names
@@ -58,6 +59,8 @@ class Settings:
     fields: Sequence[int] = ()  # time indices of whole fields
     section_forces: tuple[str, ...] = ()  # sensors at which section forces are kept
     envelopes: tuple[str, ...] = ()  # quantities of which envelopes along the line are kept
+    basis: str | ReducedBasis = "full"
+    basis_tolerance: float = 1e-3  # of the estimated error of a basis that is built here [-]
     notes: Sequence[str] = ()  # what was chosen by default, and warnings
 
 
@@ -76,6 +79,8 @@ def settings_for(
     fields: Sequence[float] | int | None = None,
     section_forces: Sequence[str] | None = None,
     envelopes: Sequence[str] | None = None,
+    basis: str | ReducedBasis = "full",
+    basis_tolerance: float = 1e-3,
 ) -> Settings:
     """Check the settings of a run and fill in what the user left to us.
 
@@ -87,6 +92,7 @@ def settings_for(
     _check_counts(time_step, steps, every)
     if coupling not in COUPLINGS:
         raise InputError(f"must be one of {', '.join(COUPLINGS)}", field="method", value=coupling)
+    _check_basis(basis, basis_tolerance, coupling)
     notes: list[str] = []
     chosen = _method(crossing, method, notes)
     length = _footprint(crossing, footprint, notes)
@@ -103,8 +109,21 @@ def settings_for(
         field_steps(fields, float(time_step), int(steps)),
         section_names(section_forces, sensors or {}),
         envelope_names(envelopes),
+        basis,
+        float(basis_tolerance),
         tuple(notes),
     )
+
+
+def _check_basis(basis: str | ReducedBasis, tolerance: float, coupling: str) -> None:
+    if isinstance(basis, str) and basis not in ("full", "reduced"):
+        raise InputError("must be full, reduced, or a ReducedBasis", field="basis", value=basis)
+    if basis != "full" and coupling != "direct":
+        raise InputError(
+            "goes with the direct method only", field="basis", value="reduced", fix="Use method: direct"
+        )
+    if not 0.0 < tolerance < 1.0:
+        raise InputError("must lie between 0 and 1", field="basis_tolerance", value=tolerance)
 
 
 def _check_counts(time_step: float, steps: int, every: int) -> None:

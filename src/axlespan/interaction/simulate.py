@@ -7,8 +7,10 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from axlespan.dynamics.alpha import Alpha
+from axlespan.dynamics.reduction import ReducedBasis, reduced_basis
 from axlespan.errors import AnalysisError, InputError, Outcome
 from axlespan.interaction.bodies import PreparedStructure
 from axlespan.interaction.convoy import Couple, Lane, drive
@@ -18,10 +20,19 @@ from axlespan.interaction.literal import couple_literally
 from axlespan.interaction.march import couple_directly
 from axlespan.interaction.plan import Plan, plan_for
 from axlespan.interaction.recorder import Recorder
+from axlespan.interaction.reduced_body import PreparedReduced
+from axlespan.interaction.reduction_error import ReductionError
 from axlespan.interaction.refactored import couple_by_refactoring
 from axlespan.interaction.result import Result
 from axlespan.interaction.settings import Iteration, Settings, settings_for
 from axlespan.interaction.start import start_of
+from axlespan.running.structure import Structure
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+# Blocks of Ritz vectors and cut-offs of the bases that are tried, from lean to rich.
+_BASES = ((3, 1e-3), (4, 1e-4), (5, 1e-5), (6, 1e-6))
 
 
 def _couple(coupling: str) -> tuple[Couple, bool]:
@@ -48,6 +59,8 @@ def simulate(
     fields: Sequence[float] | int | None = None,
     section_forces: Sequence[str] | None = None,
     envelopes: Sequence[str] | None = None,
+    basis: str | ReducedBasis = "full",
+    basis_tolerance: float = 1e-3,
     progress: Callable[[int], None] | None = None,
 ) -> Result:
     """Simulate a crossing.
@@ -84,6 +97,11 @@ def simulate(
     envelopes : sequence of str, optional
         Quantities whose extremes along the line are kept: "moment", "shear", "normal", "torsion",
         "deflection", "acceleration".
+    basis : {"full", "reduced"} or ReducedBasis
+        All d.o.f. of the structure, or a reduced basis, which is built here or given (see
+        :func:`reduce_structure`). The result's facts hold its size and an estimate of its error.
+    basis_tolerance : float
+        Estimated error [-] that a basis built here must reach; it grows until it does.
     progress : callable, optional
         Called with the number of steps done, now and then.
 
@@ -112,6 +130,8 @@ def simulate(
         fields=fields,
         section_forces=section_forces,
         envelopes=envelopes,
+        basis=basis,
+        basis_tolerance=basis_tolerance,
     )
     return run_plan(plan_for(crossing, settings), progress)
 
@@ -129,6 +149,8 @@ def simulate_many(
     fields: Sequence[float] | int | None = None,
     section_forces: Sequence[str] | None = None,
     envelopes: Sequence[str] | None = None,
+    basis: str | ReducedBasis = "full",
+    basis_tolerance: float = 1e-3,
 ) -> list[Result]:
     """Simulate several crossings of one structure side by side, from one factorization.
 
@@ -138,7 +160,7 @@ def simulate_many(
         All with the same ``structure``; trains, speeds, starts and irregularities may differ.
     steps : int or sequence of int
         Number of time steps, one for all or one each.
-    time_step, method, sensors, footprint, solver, every, fields, section_forces, envelopes
+    time_step, method, sensors, footprint, solver, every, fields, section_forces, envelopes, basis, basis_tolerance
         As for :func:`simulate`. The defaults of method and footprint follow from all trains together.
 
     Returns
@@ -177,6 +199,8 @@ def simulate_many(
             fields=fields,
             section_forces=section_forces,
             envelopes=envelopes,
+            basis=basis,
+            basis_tolerance=basis_tolerance,
         )
 
     pairs = list(zip(crossings, counts, strict=True))
@@ -200,31 +224,122 @@ def run_plan(plan: Plan, progress: Callable[[int], None] | None = None) -> Resul
 
 def run_plans(plans: Sequence[Plan], progress: Callable[[int], None] | None = None) -> list[Result]:
     """Compute compiled crossings of one structure side by side; failed ones are among the results."""
-    begun = time.perf_counter()
     settings = plans[0].settings
-    prepared = prepare(plans)
-    lanes = [Lane.at_start(plan, start_of(plan), Recorder(plan, progress)) for plan in plans]
-    couple, systems = _couple(settings.coupling)
+    if settings.basis == "full":
+        return _driven(plans, progress, prepare(plans), None)
+    if isinstance(settings.basis, ReducedBasis):
+        return _driven(plans, progress, _prepare_reduced(plans, settings.basis), settings.basis)
+    return _refined(plans, progress)
+
+
+def _refined(plans: Sequence[Plan], progress: Callable[[int], None] | None) -> list[Result]:
+    """Compute with richer and richer bases until the estimated error is within the tolerance."""
+    results: list[Result] = []
+    for blocks, cutoff in _BASES:
+        begun = time.perf_counter()
+        basis = reduced_basis(
+            plans[0].structure.K,
+            plans[0].structure.M,
+            _path_dofs(plans),
+            blocks=blocks,
+            cutoff=cutoff,
+            extra=_translations(plans[0].crossing.structure),
+            solver=plans[0].settings.solver,
+        )
+        seconds = time.perf_counter() - begun
+        results = _driven(plans, progress, _prepare_reduced(plans, basis), basis, {"basis_time": seconds})
+        worst = max(float(result.facts["reduction_error"]) for result in results)
+        if worst <= plans[0].settings.basis_tolerance:
+            break
+    return results
+
+
+def _driven(
+    plans: Sequence[Plan],
+    progress: Callable[[int], None] | None,
+    prepared: PreparedStructure,
+    basis: ReducedBasis | None,
+    facts: Mapping[str, Any] | None = None,
+) -> list[Result]:
+    begun = time.perf_counter()
+    errors = [None if basis is None else ReductionError(plan, basis) for plan in plans]
+    recorders = [
+        Recorder(plan, progress, [] if error is None else [error])
+        for plan, error in zip(plans, errors, strict=True)
+    ]
+    lanes = [
+        Lane.at_start(plan, start_of(plan), keeper) for plan, keeper in zip(plans, recorders, strict=True)
+    ]
+    couple, systems = _couple(plans[0].settings.coupling)
     drive(lanes, prepared, couple, systems=systems)
-    seconds = time.perf_counter() - begun
-    return [_result(lane, prepared, seconds, len(lanes)) for lane in lanes]
+    common = {**(facts or {}), "wall_time": time.perf_counter() - begun, "side_by_side": len(lanes)}
+    results = []
+    for lane, error in zip(lanes, errors, strict=True):
+        own = dict(common)
+        if error is not None and basis is not None:
+            own |= {"basis_size": basis.size, "reduction_error": error.estimate}
+        results.append(_result(lane, prepared, own))
+    return results
+
+
+def _path_dofs(plans: Sequence[Plan]) -> IntArray:
+    return np.unique(np.concatenate([path.free.path_dofs for plan in plans for path in plan.rows.paths]))
 
 
 def prepare(plans: Sequence[Plan]) -> PreparedStructure:
     """Factor the structure that the plans share."""
     settings = plans[0].settings
-    used = [path.free.path_dofs for plan in plans for path in plan.rows.paths]
-    path_dofs = np.unique(np.concatenate(used))
     return PreparedStructure(
-        plans[0].structure, settings.method, settings.time_step, path_dofs, solver=settings.solver
+        plans[0].structure, settings.method, settings.time_step, _path_dofs(plans), solver=settings.solver
     )
 
 
-def _result(lane: Lane, prepared: PreparedStructure, seconds: float, lanes: int) -> Result:
-    facts = _facts(lane.plan, prepared) | {"wall_time": seconds, "side_by_side": lanes}
+def _prepare_reduced(plans: Sequence[Plan], basis: ReducedBasis) -> PreparedReduced:
+    settings = plans[0].settings
+    if basis.vectors.shape[0] != plans[0].structure.size:
+        raise InputError(
+            f"is of a structure with {basis.vectors.shape[0]} d.o.f., not {plans[0].structure.size}",
+            field="basis",
+        )
+    return PreparedReduced(plans[0].structure, basis, settings.method, settings.time_step)
+
+
+def reduce_structure(
+    structure: Structure, *, blocks: int = 3, cutoff: float = 1e-5, modes: int = 0, solver: str = "auto"
+) -> ReducedBasis:
+    """A reduced basis of a structure, for loads on its running lines; see :func:`reduced_basis`.
+
+    The basis serves every train, speed, irregularity and time step.
+    """
+    system = structure.system
+    number = np.full(system.size, -1, dtype=np.int64)
+    number[system.free] = np.arange(len(system.free))
+    used = [path.renumbered(number).path_dofs for path in structure.lines.values()]
+    blocks_of = system.partition
+    return reduced_basis(
+        blocks_of.K_FF,
+        blocks_of.M_FF,
+        np.unique(np.concatenate(used)),
+        blocks=blocks,
+        cutoff=cutoff,
+        modes=modes,
+        extra=_translations(structure),
+        solver=solver,
+    )
+
+
+def _translations(structure: Structure) -> FloatArray:
+    """Rigid translations (n, 3 at most) of the free d.o.f."""
+    system = structure.system
+    shapes = [system.translation(component)[system.free] for component in ("x", "y", "z")]
+    return np.column_stack([shape for shape in shapes if np.any(shape)])
+
+
+def _result(lane: Lane, prepared: PreparedStructure, facts: Mapping[str, Any]) -> Result:
+    own = {**_facts(lane.plan, prepared), **facts}
     if lane.error is not None:
-        return lane.recorder.result(Outcome("failed", str(lane.error)), facts)
-    return lane.recorder.result(Outcome("completed", f"{lane.plan.settings.steps} steps computed"), facts)
+        return lane.recorder.result(Outcome("failed", str(lane.error)), own)
+    return lane.recorder.result(Outcome("completed", f"{lane.plan.settings.steps} steps computed"), own)
 
 
 def _facts(plan: Plan, prepared: PreparedStructure) -> dict[str, Any]:

@@ -35,6 +35,7 @@ class Watched:
     """What of the structure is written down: d.o.f., and sums over all d.o.f."""
 
     dofs: IntArray  # (n_selected,) of all crossings together, sorted
+    reading: FloatArray | None  # (n_selected, m) from m coordinates of the state; None: d.o.f. are among them
     sums: Sequence[
         tuple[FloatArray, int]
     ]  # vectors (n,) and 0, 1, 2 for displacement, velocity, acceleration
@@ -46,7 +47,8 @@ class Tape:
     def __init__(self, watched: Watched, lanes: int, n_vehicle_dof: int, n_contact: int) -> None:
         self.watched, self._lanes = watched, lanes
         self._sizes = (n_vehicle_dof, n_contact)
-        self._flat = (watched.dofs[:, None] * lanes + np.arange(lanes)).ravel()
+        places = watched.dofs if watched.reading is None else np.arange(watched.reading.shape[1])
+        self._flat = (places[:, None] * lanes + np.arange(lanes)).ravel()
         self._n_step = 0
 
     def start(self, n_step: int) -> None:
@@ -77,9 +79,13 @@ class Tape:
     def of(self, lane: int, dofs: IntArray, vehicle_dofs: slice, contacts: slice) -> LaneTape:
         """The tape of one crossing: some watched d.o.f. (n_selected,), its vehicles' d.o.f. and contacts."""
         n = self.filled
-        at = np.searchsorted(self.watched.dofs, dofs) * self._lanes + lane
+        at, reading = np.searchsorted(self.watched.dofs, dofs), self.watched.reading
+        if reading is None:
+            near = self._near[:n, :, at * self._lanes + lane]
+        else:
+            near = self._near[:n, :, lane :: self._lanes] @ reading[at].T
         return LaneTape(
-            self._near[:n, :, at].transpose(1, 0, 2),
+            near.transpose(1, 0, 2),
             self._vehicles[:n, :, vehicle_dofs].transpose(1, 0, 2),
             self._forces[:n, contacts],
             self._sums[:n, :, lane],

@@ -66,7 +66,7 @@ def compile_model(model: Model) -> Compiled:
         loads=_loads(model, table, elimination),
         independent=independent,
     )
-    return Compiled(_with_modal_damping(system, model.damping), table)
+    return Compiled(with_modal_damping(system, model.damping), table)
 
 
 def dof_table(model: Model) -> DofTable:
@@ -177,7 +177,7 @@ def _loads(model: Model, table: DofTable, elimination: sp.csr_array) -> tuple[Lo
     return tuple(loads)
 
 
-def _with_modal_damping(system: System, damping: Damping | None) -> System:
+def with_modal_damping(system: System, damping: Damping | None) -> System:
     """C = Σ 2 ζ ω (M φ)(M φ)ᵀ over the free d.o.f., kept as its factors."""
     if not isinstance(damping, Modal) or damping.ratio == 0.0:
         return system

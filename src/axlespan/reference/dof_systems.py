@@ -91,7 +91,7 @@ class SuspendedBody:
         t, pole = np.asarray(time, dtype=np.float64), self._pole
         rate = rise / duration
         later = np.maximum(t - duration, 0.0)
-        kicks = np.exp(pole * t) - np.where(t > duration, np.exp(pole * later), 0.0)
+        kicks = np.exp(pole * t) - np.where(t >= duration, np.exp(pole * later), 0.0)
         foot = rise * np.clip(t / duration, 0.0, 1.0), np.where(t < duration, rate, 0.0)
         return self._over_foot(t, *foot, 1j * rate / pole.imag * kicks)
 

@@ -63,12 +63,11 @@ def taken(part: BeamPart, elements: IntArray) -> BeamPart:
     """Some beams of a part, repeated as often as they are named."""
     properties = part.properties.broadcast(len(part.nodes))
     chosen = {f.name: np.asarray(getattr(properties, f.name))[elements] for f in fields(BeamProperties)}
-    per_element = {
-        name: value[elements] if value is not None and value.ndim > 1 else value
-        for name, value in (("up", part.up), ("offset", part.offset))
-    }
+    up, offset = (
+        value[elements] if value is not None and value.ndim > 1 else value for value in (part.up, part.offset)
+    )
     properties = replace(properties, **chosen)
-    return replace(part, nodes=part.nodes[elements], properties=properties, **per_element)
+    return replace(part, nodes=part.nodes[elements], properties=properties, up=up, offset=offset)
 
 
 def carriers(structure: Structure, line: PolynomialPath, beams: BeamTable) -> Carriers:

@@ -24,7 +24,7 @@ from axlespan.elements.beam_sections import QUANTITIES
 from axlespan.errors import InputError
 from axlespan.model.assembly import element_dofs
 from axlespan.model.damping import Rayleigh
-from axlespan.running.beams import REVERSED, BeamTable, Carriers, carriers, taken
+from axlespan.running.beams import REVERSED, BeamTable, carriers, taken
 from axlespan.running.line import VERTICAL
 from axlespan.running.path import PolynomialPath
 from axlespan.running.structure import MAIN_LINE, Structure

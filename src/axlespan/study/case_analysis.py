@@ -189,7 +189,9 @@ class Output(Part):
     """Whole fields of displacements and velocities, at a list of times or at every so many steps."""
     section_forces: Annotated[tuple[Text, ...], Field(examples=["[midspan]"])] = ()
     """Sensors at which moment, shear, normal force and torsion of the beams are recorded."""
-    envelopes: Annotated[tuple[Annotated[str, OneOf(ENVELOPES)], ...], Field(examples=["[moment, shear]"])] = ()
+    envelopes: Annotated[
+        tuple[Annotated[str, OneOf(ENVELOPES)], ...], Field(examples=["[moment, shear]"])
+    ] = ()
     """Quantities whose extremes along the running line are recorded."""
 
     @model_validator(mode="after")

@@ -1,24 +1,39 @@
-"""Structures and vehicles that come from files: finite element meshes and matrices."""
+"""Structures that come from finite element meshes: read from a file, or made of equal cells."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import Discriminator, Field, model_validator
+from pydantic import Field, model_validator
 
 from axlespan.errors import InputError
 from axlespan.study.case_damping import StructuralDamping
-from axlespan.study.case_support import Support
+from axlespan.study.case_nodes import (
+    Nodes,
+    NodeSupport,
+    Offset,
+    Point,
+    PointMass,
+    RigidLink,
+    Spring,
+    Start,
+    Tie,
+)
 from axlespan.study.check_lists import Several
-from axlespan.study.checks import Measured, Part
+from axlespan.study.checks import Checked, Measured, OneOf, Part, Whole
 from axlespan.study.faults import InputErrors, listed, nearest
-from axlespan.study.kinds import ExistingFile, tag
+from axlespan.study.kinds import ExistingFile
 from axlespan.study.quantities import (
     Area,
     Density,
+    Elements,
+    Flag,
+    MassPerLength,
     Modulus,
+    Name,
     PoissonRatio,
     SecondMoment,
     Text,
@@ -27,8 +42,11 @@ from axlespan.study.quantities import (
 from axlespan.units import LENGTH, NUMBER
 
 File = Annotated[Path, ExistingFile(), Field(examples=["bridge.msh"])]
-Point = Annotated[tuple[float, ...], Several(Measured(LENGTH), exactly=3, example="[0 m, 0 m, 0 m]")]
-Positions = Annotated[tuple[float, ...], Several(Measured(LENGTH), increasing=True, example="[0 m, 5 m]")]
+Sides = Measured(LENGTH, above=0.0, believable=(1e-3, 1e4))
+
+#: What the elements of a set may be.
+SECTION_KINDS = ("solid", "shell", "plane", "beam", "bar")
+LENGTH_UNITS = ("m", "cm", "mm", "ft", "in")
 
 
 class Material(Part):
@@ -43,14 +61,22 @@ class Material(Part):
 
 
 class Section(Part):
-    """What the elements of one set of the mesh are made of; which values it needs depends on their type."""
+    """What the elements of one set of the mesh are made of; which values it needs depends on its kind."""
 
     material: Annotated[Text, Field(examples=["concrete"])]
     """Name of one of the materials."""
+    kind: Annotated[str, OneOf(SECTION_KINDS)] | None = None
+    """When left out: solid; shell (plane in a plane model); beam, or bar where there is an area only."""
+    formulation: Annotated[str, OneOf(("incompatible", "full"))] | None = None
+    """Of solids and planes: with incompatible modes, good in bending, or fully integrated displacements."""
     thickness: Thickness | None = None
-    """Of shells."""
+    """Of shells, and of planes along y."""
+    offset: Offset | None = None
+    """From the nodes to the middle surface of shells along their normal; to the axis of beams [x, y, z]."""
+    state: Annotated[str, OneOf(("stress", "strain"))] | None = None
+    """Of planes: plane stress, as in walls, or plane strain."""
     area: Area | None = None
-    """Of beams."""
+    """Of beams and bars."""
     second_moment_y: SecondMoment | None = None
     """Of beams: bending in the local x-z plane."""
     second_moment_z: SecondMoment | None = None
@@ -61,38 +87,154 @@ class Section(Part):
     """Of Timoshenko beams."""
     shear_area_z: Area | None = None
     """Of Timoshenko beams."""
+    mass_per_length: MassPerLength | None = None
+    """Of beams, in place of density times area."""
     orientation: (
         Annotated[tuple[float, ...], Several(Measured(NUMBER), exactly=3, example="[0, 0, 1]")] | None
     ) = None
     """Of beams: a vector in the local x-z plane; vertical when left out."""
+    lumped_mass: Flag | None = None
+    """Of solids, planes and shells: whether the mass stands at the nodes alone."""
+
+
+@dataclass(frozen=True)
+class Divisions(Checked):
+    """Numbers of cells along the axes."""
+
+    exactly: int
+
+    def read(self, raw: Any) -> tuple[int, ...]:
+        """Return the numbers."""
+        example = f"[{', '.join(['10'] * self.exactly)}]"
+        if not isinstance(raw, (list, tuple)) or len(raw) != self.exactly:
+            rule = f"must be a list of {self.exactly} whole numbers"
+            raise InputError(rule, value=raw, fix=f"Write {example}")
+        values, faults = [], []
+        for number, one in enumerate(raw):
+            try:
+                values.append(Whole(at_most=100_000).read(one))
+            except InputError as error:
+                faults.append(InputError(error.rule, field=str(number), value=one, fix=error.fix))
+        if faults:
+            raise InputErrors(faults)
+        return tuple(values)
+
+    def json_schema(self) -> dict[str, Any]:
+        """Return the JSON Schema."""
+        size = {"minItems": self.exactly, "maxItems": self.exactly}
+        return {"type": "array", "items": Whole(at_most=100_000).json_schema(), **size}
+
+
+class Box(Part):
+    """Equal cells in a box; sets: volume, its faces x_min, x_max, ... and edges x_min/z_min, ..."""
+
+    lengths: Annotated[tuple[float, ...], Several(Sides, exactly=3, example="[25 m, 2 m, 2.5 m]")]
+    """Lengths along x, y and z."""
+    divisions: Annotated[tuple[int, ...], Divisions(3), Field(examples=["[100, 10, 10]"])]
+    """Numbers of cells along x, y and z."""
+    origin: Point = (0.0, 0.0, 0.0)
+    """The corner with the lowest coordinates."""
+    elements: Annotated[str, OneOf(("hex8", "hex20", "wedge6", "tet4", "tet10"))] = "hex8"
+    """Elements that the cells are made of."""
+
+
+class Rectangle(Part):
+    """Equal cells in a rectangle; sets: surface, its edges x_min, x_max, ... and corners x_min/y_min, ..."""
+
+    lengths: Annotated[tuple[float, ...], Several(Sides, exactly=2, example="[25 m, 10 m]")]
+    """Lengths along both of its axes."""
+    divisions: Annotated[tuple[int, ...], Divisions(2), Field(examples=["[50, 20]"])]
+    """Numbers of cells along both of its axes."""
+    origin: Point = (0.0, 0.0, 0.0)
+    """The corner with the lowest coordinates."""
+    plane: Annotated[str, OneOf(("xy", "xz"))] = "xy"
+    """Its axes."""
+    elements: Annotated[str, OneOf(("quad4", "quad8", "tri3", "tri6"))] = "quad4"
+    """Elements that the cells are made of."""
+
+
+class Straight(Part):
+    """Equal line elements; sets: line, start, end."""
+
+    from_: Annotated[Point, Field(alias="from", examples=["[0 m, 0 m, 0 m]"])]
+    """First point."""
+    to: Annotated[Point, Field(examples=["[25 m, 0 m, 0 m]"])]
+    """Last point."""
+    divisions: Annotated[Elements, Field(examples=["50"])]
+    """Number of elements."""
+
+
+class MadeMesh(Part):
+    """A mesh of equal cells: one of box, rectangle and line."""
+
+    box: Box | None = None
+    """Solids."""
+    rectangle: Rectangle | None = None
+    """Shells or planes."""
+    line: Straight | None = None
+    """Beams."""
+
+    @model_validator(mode="after")
+    def _one(self) -> Self:
+        if len(self.given()) != 1:
+            raise InputError(
+                "must be one of box, rectangle and line",
+                fix="Write {box: {lengths: [25 m, 2 m, 2.5 m], divisions: [50, 4, 5]}}",
+            )
+        return self
 
 
 class MeshLine(Part):
-    """Where wheels run on a mesh: along named nodes, or straight from one point to another."""
+    """Where wheels run on a mesh: along nodes, along a polyline, or straight from one point to another."""
 
-    nodes: Text | None = None
-    """Name of the set of nodes in the mesh file."""
+    nodes: Nodes | None = None
+    """Set of nodes, or coordinates of the nodes; they are ordered along the line that they form."""
     from_: Annotated[Point | None, Field(alias="from")] = None
     """First point, x, y and z."""
     to: Point | None = None
     """Last point."""
+    points: Annotated[tuple[Point, ...] | None, Field(examples=["[[0 m, 0 m, 0 m], [25 m, 0 m, 0 m]]"])] = (
+        None
+    )
+    """Points of a polyline in the direction of travel."""
+    start: Start = 0.0
+    """Position of its first point along the line."""
+    surface: Text | None = None
+    """Set of elements or of nodes on whose surface it runs; all surfaces that look up when left out."""
+    tolerance: Annotated[float, Measured(LENGTH, above=0.0)] | None = None
+    """Largest distance from that surface; 5 % of the size of an element's face when left out."""
 
     @model_validator(mode="after")
     def _one_way(self) -> Self:
-        points = (self.from_ is not None) + (self.to is not None)
-        if (self.nodes is not None and points) or (self.nodes is None and points != 2):
+        ends = (self.from_ is not None) + (self.to is not None)
+        ways = (self.nodes is not None) + (self.points is not None) + (ends > 0)
+        if ways != 1 or ends == 1:
             raise InputError(
                 "must be given by nodes, or by from and to",
                 fix="Write {from: [0 m, 0 m, 0 m], to: [25 m, 0 m, 0 m]}, or {nodes: rail}",
             )
+        if self.points is not None and len(self.points) < 2:
+            raise InputError("must be at least two points", field="points")
         return self
 
 
 class Mesh(Part):
     """A finite element mesh with its materials and sections."""
 
-    file: File
-    """Mesh file."""
+    file: Annotated[Path | None, ExistingFile(), Field(examples=["bridge.msh"])] = None
+    """Mesh file: Gmsh (.msh), Abaqus (.inp), or one of the formats of meshlane."""
+    mesh: MadeMesh | None = None
+    """A mesh of equal cells, in place of a file."""
+    unit: Annotated[str, OneOf(LENGTH_UNITS)] = "m"
+    """Unit of the coordinates in the file."""
+    up: Annotated[str, OneOf(("y", "z"))] = "z"
+    """Axis of the file that points up; y becomes z and z becomes -y."""
+    plane: Flag = False
+    """Whether the model is a plane one, in x and z."""
+    merge: Annotated[float, Measured(LENGTH, above=0.0, believable=(1e-9, 1.0))] | None = None
+    """Nodes no farther apart than this become one."""
+    points: Annotated[Mapping[Name, Point], Field(examples=["{bearing: [0 m, 0 m, -0.5 m]}"])] = {}  # noqa: RUF012
+    """Further nodes by their names, for links, springs, masses and supports."""
     materials: Annotated[
         Mapping[str, Material],
         Field(examples=["{concrete: {youngs_modulus: 34 GPa, poisson_ratio: 0.2, density: 2500 kg/m^3}}"]),
@@ -100,6 +242,22 @@ class Mesh(Part):
     """Materials by their names."""
     sections: Annotated[Mapping[str, Section], Field(examples=["{deck: {material: concrete}}"])]
     """Sections by the names of the element sets of the mesh."""
+    masses: tuple[PointMass, ...] = ()
+    """Masses at nodes."""
+    springs: tuple[Spring, ...] = ()
+    """Springs and dashpots between nodes."""
+    rigid_links: tuple[RigidLink, ...] = ()
+    """Nodes that follow another one as a rigid body."""
+    ties: tuple[Tie, ...] = ()
+    """Nodes that are tied to others at the same place."""
+
+    @model_validator(mode="after")
+    def _one_mesh(self) -> Self:
+        if self.file is None and self.mesh is None:
+            raise InputError("is missing", field="file", fix="Add file: bridge.msh, or mesh: {box: ...}")
+        if self.file is not None and self.mesh is not None:
+            raise InputError("says again what file says", field="mesh", fix="Keep one of the two")
+        return self
 
     @model_validator(mode="after")
     def _materials_known(self) -> Self:
@@ -120,62 +278,34 @@ class Mesh(Part):
         return self
 
 
+def require_a_line(line: Any, lines: Mapping[str, Any] | None, example: str) -> None:
+    """Require one running line, or several with names.
+
+    Raises
+    ------
+    InputError
+        With the field ``running_line`` or ``running_lines``.
+    """
+    if line is None and not lines:
+        raise InputError("is missing", field="running_line", fix=f"Add running_line: {example}")
+    if line is not None and lines is not None:
+        raise InputError("says again where wheels run", field="running_lines", fix="Keep one of the two")
+
+
 class MeshStructure(Mesh):
-    """A structure from a mesh file."""
+    """A structure from a mesh."""
 
     kind: Literal["mesh"]
-    supports: Annotated[tuple[Support, ...], Field(examples=["[{at: bearings, fixed: [x, y, z]}]"])]
-    """Supports, at sets of nodes of the mesh."""
-    running_line: Annotated[MeshLine, Field(examples=["{nodes: rail}"])]
+    supports: Annotated[tuple[NodeSupport, ...], Field(examples=["[{at: bearings, fixed: [x, y, z]}]"])]
+    """Supports, at nodes of the mesh."""
+    running_line: Annotated[MeshLine | None, Field(examples=["{nodes: rail}"])] = None
     """Where wheels run."""
+    running_lines: Mapping[Name, MeshLine] | None = None
+    """Several running lines by their names, in place of one; the first is the main one."""
     damping: StructuralDamping | None = None
     """Structural damping; none when left out."""
 
-
-class MatricesLine(Part):
-    """Where wheels run on a structure of matrices: vertical d.o.f. along the line and their positions."""
-
-    dofs: tuple[Text, ...] | None = None
-    """Numbers (from 0) or names of the vertical d.o.f., in the direction of travel."""
-    positions: Positions | None = None
-    """Position of each."""
-    file: Annotated[Path, ExistingFile()] | None = None
-    """Table of two columns, d.o.f. and position, in place of the two lists."""
-
     @model_validator(mode="after")
-    def _as_many(self) -> Self:
-        if (self.file is None) == (self.dofs is None and self.positions is None):
-            raise InputError(
-                "must be given by file, or by dofs and positions",
-                fix="Write {dofs: [0, 2], positions: [0 m, 5 m]}",
-            )
-        if self.file is None and len(self.dofs or ()) != len(self.positions or ()):
-            raise InputError(
-                "must have as many positions as dofs: "
-                f"there are {len(self.positions or ())} and {len(self.dofs or ())}"
-            )
+    def _runs(self) -> Self:
+        require_a_line(self.running_line, self.running_lines, "{nodes: rail}")
         return self
-
-
-class MatricesStructure(Part):
-    """A structure given by its matrices, from any finite element program."""
-
-    kind: Literal["matrices"]
-    stiffness: File
-    """Stiffness matrix."""
-    mass: File
-    """Mass matrix."""
-    damping: (
-        Annotated[
-            Annotated[Path, ExistingFile(), tag("file")] | Annotated[StructuralDamping, tag("law")],
-            Discriminator(lambda raw: "<file>" if isinstance(raw, (str, Path)) else "<law>"),
-        ]
-        | None
-    ) = None
-    """Damping matrix, or damping as for other structures; none when left out."""
-    coordinates: Annotated[Path, ExistingFile()] | None = None
-    """Coordinates of the nodes, for plots."""
-    running_line: Annotated[MatricesLine, Field(examples=["{dofs: [0, 2], positions: [0 m, 5 m]}"])]
-    """Where wheels run."""
-    supports: tuple[Support, ...] = ()
-    """Supports, at named d.o.f.; none when the matrices hold them already."""

@@ -8,7 +8,8 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from axlespan.errors import InputError
 from axlespan.study.case_damping import StructuralDamping
-from axlespan.study.case_imported import MatricesStructure, MeshStructure
+from axlespan.study.case_imported import MeshStructure
+from axlespan.study.case_matrices import MatricesStructure
 from axlespan.study.case_support import Support
 from axlespan.study.checks import Part
 from axlespan.study.faults import InputErrors

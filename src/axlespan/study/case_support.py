@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
@@ -129,15 +129,9 @@ class Dashpots(Part):
     rz: RotationalDashpot | None = None
 
 
-class Support(Part):
-    """What holds the structure at one place: rigidly, elastically, or as its motion prescribes.
+class Held(Part):
+    """What holds one place: rigidly, elastically, or as its motion prescribes."""
 
-    A direction may stand under one of ``fixed``, ``stiffness`` (and ``damping``) and ``motion``; one that
-    stands nowhere is free.
-    """
-
-    at: Annotated[float | str, Location(), Field(examples=["0 m"])]
-    """Position along the structure, or the name of a node (set) of a mesh."""
     fixed: tuple[Direction, ...] = ()
     """Directions that do not move: x, y, z and the rotations rx, ry, rz."""
     stiffness: Springs | None = None
@@ -148,7 +142,7 @@ class Support(Part):
     """Prescribed motion: settlements, base excitation."""
 
     @model_validator(mode="after")
-    def _holds_once(self) -> Support:
+    def _holds_once(self) -> Self:
         springs = self.stiffness.given() if self.stiffness else {}
         dashpots = self.damping.given() if self.damping else {}
         moved = self.motion.given() if self.motion else {}
@@ -169,3 +163,14 @@ class Support(Part):
                         fix="Keep one of the two",
                     )
         return self
+
+
+class Support(Held):
+    """What holds the structure at one place: rigidly, elastically, or as its motion prescribes.
+
+    A direction may stand under one of ``fixed``, ``stiffness`` (and ``damping``) and ``motion``; one that
+    stands nowhere is free.
+    """
+
+    at: Annotated[float | str, Location(), Field(examples=["0 m"])]
+    """Position along the structure, or the name of a node (set) of a mesh."""

@@ -63,9 +63,10 @@ def read_matrices(
     mass: FilePath,
     damping: FilePath | None = None,
     *,
-    dofs: FilePath | None = None,
+    dofs: FilePath | DofMap | None = None,
     coordinates: FilePath | None = None,
     format: str | None = None,
+    unnamed: bool = False,
 ) -> MatrixModel:
     """Read the matrices of a model from another program.
 
@@ -75,13 +76,15 @@ def read_matrices(
         Matrix files. All formats take a symmetric matrix whole or by one of its triangles.
     damping : path, optional
         Damping matrix.
-    dofs : path, optional
+    dofs : path or DofMap, optional
         Map of rows to nodes and components (`read_dof_map`). Abaqus files name their d.o.f. themselves,
         unless the layout is COORDINATE; the ``.mapping`` file of Ansys is found beside the stiffness.
     coordinates : path, optional
         Node coordinates (`read_coordinates`).
     format : {"matrix-market", "npz", "abaqus", "harwell-boeing"}, optional
         Format of the matrices; each file's beginning tells it when left out.
+    unnamed : bool
+        Whether rows without a map are taken as they come: d.o.f. ``1.row``, ``2.row``, …
 
     Returns
     -------
@@ -99,9 +102,9 @@ def read_matrices(
     formats = {name: format or format_of(path) for name, path in files.items()}
     if dofs is None and formats["stiffness"] == "harwell-boeing":
         dofs = _mapping_beside(stiffness)
-    names = None if dofs is None else read_dof_map(dofs)
+    names = dofs if dofs is None or isinstance(dofs, DofMap) else read_dof_map(dofs)
     parts = {name: _read(path, formats[name], names) for name, path in files.items()}
-    names, matrices = _named(files, parts, names)
+    names, matrices = _named(files, parts, names, unnamed)
     held = (
         held_rows(matrices["stiffness"]) if formats["stiffness"] == "abaqus" else np.empty(0, dtype=np.int64)
     )
@@ -152,7 +155,10 @@ def _read(path: FilePath, format: str, names: DofMap | None) -> NodalEntries | c
 
 
 def _named(
-    files: Mapping[str, FilePath], parts: Mapping[str, NodalEntries | csr_array], names: DofMap | None
+    files: Mapping[str, FilePath],
+    parts: Mapping[str, NodalEntries | csr_array],
+    names: DofMap | None,
+    unnamed: bool,
 ) -> tuple[DofMap, dict[str, csr_array]]:
     """The d.o.f. and the matrices in their order."""
     nodal = {name: part for name, part in parts.items() if isinstance(part, NodalEntries)}
@@ -166,6 +172,9 @@ def _named(
             raise InputError("is not needed: the matrices name their d.o.f.", field="dofs", fix=fix)
         found, matrices = matrices_of(list(nodal.values()))
         return found, dict(zip(nodal, matrices, strict=True))
+    if names is None and unnamed:
+        size = plain["stiffness"].shape[0]
+        names = DofMap(np.arange(1, size + 1), ("row",) * size)
     if names is None:
         fix = "Give a CSV file: row, node, component (1, 12, z); or the .mapping file of Ansys."
         raise InputError("need a d.o.f. map", field="matrices", place=Place(str(files["stiffness"])), fix=fix)
