@@ -236,7 +236,7 @@ def test_clamped_hyperbolic_paraboloid_does_not_lock(kind, thickness):
     load = shells.body_force(kind, saddle.corners, [0.0, 0.0, -80.0 / thickness], thickness)
     u = saddle.solve(saddle.gathered(load))[0]
     exact = {0.01: 9.3355e-5, 0.001: 6.3941e-2, 0.0001: 52.988}[thickness]
-    tolerance = {0.01: 0.02, 0.001: 0.02, 0.0001: 0.08}[thickness]
+    tolerance = {0.01: 0.02, 0.001: 0.025, 0.0001: 0.08}[thickness]
     assert -u[(saddle.s == 1) & (saddle.t == 0), Z][0] == pytest.approx(exact, rel=tolerance)
 
 
@@ -267,9 +267,9 @@ def straight_beam(kind, form):
         ("shell4", "rectangles", (1.012, 0.992, 0.985, 0.830)),
         ("shell4", "trapezoids", (1.016, 0.978, 0.984, 0.895)),
         ("shell4", "parallelograms", (1.014, 0.981, 0.985, 0.880)),
-        ("shell3", "rectangles", (0.993, 1.065, 0.976, 0.700)),
-        ("shell3", "trapezoids", (0.993, 0.733, 0.977, 0.707)),
-        ("shell3", "parallelograms", (0.993, 0.535, 0.975, 0.693)),
+        ("shell3", "rectangles", (0.993, 1.065, 0.976, 0.722)),
+        ("shell3", "trapezoids", (0.993, 0.733, 0.977, 0.756)),
+        ("shell3", "parallelograms", (0.993, 0.535, 0.975, 0.718)),
     ],
 )
 def test_straight_beam_of_one_row_of_distorted_elements(kind, form, expected):
@@ -285,8 +285,8 @@ def test_straight_beam_of_one_row_of_distorted_elements(kind, form, expected):
 
 @pytest.mark.parametrize(
     ("kind", "counts", "tolerance"),
-    # triangles follow the edges' layers of shear, one thickness wide, only as fast as their mesh does
-    [("shell4", (24, 4), 0.01), ("shell3", (24, 4), 0.27), ("shell3", (60, 8), 0.13)],
+    # along the edges runs a layer of shear, one thickness wide
+    [("shell4", (24, 4), 0.01), ("shell3", (24, 4), 0.05), ("shell3", (60, 8), 0.03)],
 )
 def test_torsion_of_a_thick_strip(kind, counts, tolerance):
     """T L/GJ with J = 0.2287 b t³ for b = 2 t."""
@@ -299,7 +299,7 @@ def test_torsion_of_a_thick_strip(kind, counts, tolerance):
     assert u[strip.s == 1, RX].mean() == pytest.approx(exact, rel=tolerance)
 
 
-@pytest.mark.parametrize(("kind", "tolerance"), [("shell4", 0.06), ("shell3", 0.12)])
+@pytest.mark.parametrize(("kind", "tolerance"), [("shell4", 0.04), ("shell3", 0.08)])
 def test_curved_beam(kind, tolerance):
     """In-plane and out-of-plane, where torsion of a thick strip takes part."""
 
@@ -384,9 +384,7 @@ def test_thin_plates(kind, support, load, aspect, distortion):
     sheet = plate(kind, 16, 1.0, aspect, ShellMaterial.isotropic(1.0, 0.3), thickness, support, distortion)
     rigidity = thickness**3 / 12.0 / 0.91
     found = center_deflection(sheet, load) * rigidity
-    # 0.04 shears the elements of the long plates by 50 degrees
-    tolerance = 0.025 if kind == "shell3" and distortion and aspect > 1 else 0.02
-    assert found == pytest.approx(THIN_PLATES[support, load, aspect], rel=tolerance)
+    assert found == pytest.approx(THIN_PLATES[support, load, aspect], rel=0.015)
 
 
 @every_kind
@@ -396,8 +394,8 @@ def test_no_locking_as_the_thickness_vanishes(kind):
     for thickness in (1e-2, 1e-3, 1e-4):
         sheet = plate(kind, 6, 1.0, 1.0, ShellMaterial.isotropic(1.0, 0.3), thickness, "C", 0.05)
         found.append(center_deflection(sheet, "pressure") * thickness**3 / 12.0 / 0.91)
-    assert found[0] == pytest.approx(found[2], rel=6e-3)
-    assert found[1] == pytest.approx(found[2], rel=1e-4)
+    assert found[0] == pytest.approx(found[2], rel=1e-2)
+    assert found[1] == pytest.approx(found[2], rel=2e-4)
     assert found[2] == pytest.approx(0.00126532, rel=0.05)
 
 
@@ -430,7 +428,7 @@ def test_moments_of_a_simply_supported_plate(kind):
             exact[:, 1] += w * (n**2 + 0.3 * m**2) * sines
             exact[:, 2] -= 0.7 * w * m * n * np.cos(m * np.pi * x) * np.cos(n * np.pi * y)
     error = np.sqrt(((found.moments[:, 0] - exact) ** 2).mean() / (exact**2).mean())
-    assert error < 0.02
+    assert error < (0.01 if kind == "shell4" else 0.02)
     assert np.abs(exact).max() == pytest.approx(0.0479, rel=0.02)
 
 
@@ -450,8 +448,8 @@ def test_acute_skew_plate(kind):
         edge = (sheet.s == 0) | (sheet.s == 1) | (sheet.t == 0) | (sheet.t == 1)
         sheet.hold(sheet.s >= 0, (X, Y, RZ)).hold(edge, (Z,))
         found.append(center_deflection(sheet, "pressure") * 0.001**3 / 12.0 / 0.91 / 4.08e-4)
-    assert abs(found[2] - 1.0) < 0.05
-    assert abs(found[2] - 1.0) < abs(found[0] - 1.0)
+    np.testing.assert_allclose(found, 1.0, atol=0.05)
+    assert abs(found[2] - found[1]) < 0.01
 
 
 # ω a² √(ρ t/D) with ν = 0.3: π² (m² + n²); Leissa (1973) refined by Ritz; NAFEMS FV12 for the free plate
@@ -473,7 +471,7 @@ def test_frequencies_of_square_plates(kind, support, distortion):
     rigid = 3 if support == "F" else 0
     found = sheet.frequencies(len(expected) + rigid, rho) / unit
     assert np.all(found[:rigid] < 1e-2)
-    np.testing.assert_allclose(found[rigid:], expected, rtol=0.002 if kind == "shell4" else 0.0105)
+    np.testing.assert_allclose(found[rigid:], expected, rtol=0.002 if kind == "shell4" else 0.009)
     if support == "F":  # NAFEMS FV12 [Hz]
         fv12 = [1.622, 2.360, 2.922, 4.190, 4.190, 7.356, 7.356, 7.668]
         np.testing.assert_allclose(found[3:] * unit / (2 * np.pi), fv12, rtol=0.01)

@@ -154,6 +154,27 @@ def test_patch_of_distorted_elements_keeps_constant_states(kind, thickness, tilt
     assert np.abs(found.shear_forces).max() < 1e-6 * abs(moment[0]) / 0.02
 
 
+@pytest.mark.parametrize("thickness", [0.001, 0.05])
+@pytest.mark.parametrize("cut", [[4], [0, 2], [1]])
+def test_patch_of_both_kinds_keeps_constant_states(thickness, cut):
+    material = ShellMaterial.isotropic(1e6, 0.25)
+    points = np.column_stack([PATCH, np.zeros(8)])
+    exact = linear_state(points, (1e-3, 0.5e-3, 0.5e-3, 1e-3), (-1e-3, -1e-3, -1e-3)).ravel()
+    cells = PATCH_CELLS["shell4"]
+    four = np.delete(cells, cut, axis=0)
+    three = np.vstack([cells[cut][:, [0, 1, 2]], cells[cut][:, [0, 2, 3]]])
+    mixed = shells.mixed_sides(three, four)
+    assert mixed.sum() == (np.isin(cells[cut], [4, 5, 6, 7]).sum() if cut == [4] else 3 * len(cut))
+    k4, _ = assembled(four, shells.stiffness("shell4", points[four], material, thickness), 8)
+    k3, d3 = assembled(three, shells.stiffness("shell3", points[three], material, thickness, mixed=mixed), 8)
+    k, held, free = k3 + k4, np.arange(24), np.arange(24, 48)
+    found = np.linalg.solve(k[np.ix_(free, free)], -k[np.ix_(free, held)] @ exact[held])
+    np.testing.assert_allclose(found, exact[free], rtol=0, atol=1e-9 * np.abs(exact).max())
+    forces = shells.resultants("shell3", points[three], material, thickness, exact[d3], mixed=mixed)
+    forces = forces.along([1.0, 0.0, 0.0]).normal_forces / thickness
+    np.testing.assert_allclose(forces, np.broadcast_to([4e3 / 3, 4e3 / 3, 400.0], forces.shape), rtol=1e-8)
+
+
 @pytest.mark.parametrize("kind", ["shell3", "shell4"])
 @pytest.mark.parametrize("thickness", [0.002, 0.4])
 def test_strip_under_a_shear_force(kind, thickness):
@@ -392,6 +413,7 @@ def test_a_web_on_a_smooth_flange_does_not_turn_it():
         (lambda: shells.mass("shell4", [SQUARE], -1.0, 0.1), "density"),
         (lambda: shells.resultants("shell4", [SQUARE], STEEL, 0.1, np.zeros((1, 12))), r"\(1, 24\)"),
         (lambda: shells.body_force("shell4", [SQUARE], [1.0], 0.1), "3 finite numbers"),
+        (lambda: shells.stiffness("shell3", [SQUARE[:3]], STEEL, 0.1, mixed=[True]), r"\(1, 3\)"),
         (lambda: ShellMaterial.isotropic(210e9, 0.5), "poisson_ratio"),
         (lambda: ShellMaterial(1e9, 9e9, 0.4, 1e9, 1e9, 1e9), "E_1/E_2"),
         (lambda: ShellMaterial(1e9, 1e9, 0.4, -1e9, 1e9, 1e9), "shear_modulus_12"),

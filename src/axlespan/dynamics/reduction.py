@@ -16,7 +16,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-import scipy.linalg as sl
 import scipy.sparse as sp
 
 from axlespan.errors import InputError
@@ -25,9 +24,6 @@ from axlespan.linalg.factor import Factor, factorize
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
-
-# Static shapes are nearly all kept: they hold the local deformation under a wheel.
-_STATIC_CUTOFF = 1e-6
 
 # Right-hand sides that are solved for together.
 _BLOCK = 64
@@ -97,7 +93,7 @@ def reduced_basis(
     loads = np.zeros((K.shape[0], len(path_dofs)))
     loads[path_dofs, np.arange(len(path_dofs))] = 1.0
     static = _solved(factor, loads)
-    basis = _compressed(static, K, None, _STATIC_CUTOFF)
+    basis = _compressed(static, K, None, cutoff)
     latest = basis
     for _ in range(blocks - 1):
         latest = _compressed(_solved(factor, np.asarray(M @ latest)), K, basis, cutoff)
@@ -109,10 +105,13 @@ def reduced_basis(
         basis = np.hstack([basis, extra])
     if extra is not None and extra.size:
         basis = np.hstack([basis, _compressed(extra, K, basis, 1e-8)])
-    squares, turn = sl.eigh(basis.T @ np.asarray(K @ basis), basis.T @ np.asarray(M @ basis))
-    return ReducedBasis(
-        np.ascontiguousarray(basis @ turn), np.sqrt(np.maximum(squares, 0.0)), np.asarray(path_dofs), factor
-    )
+    # The basis is K-orthonormal: a standard eigenproblem for 1 / ω², exact where ω is low.
+    gram = basis.T @ np.asarray(M @ basis)
+    flexibility, turn = np.linalg.eigh(0.5 * (gram + gram.T))
+    order = np.flatnonzero(flexibility > 1e-14 * flexibility[-1])[::-1]
+    roots = np.sqrt(flexibility[order])
+    vectors = np.ascontiguousarray(basis @ (turn[:, order] / roots))
+    return ReducedBasis(vectors, 1.0 / roots, np.asarray(path_dofs), factor)
 
 
 def _solved(factor: Factor, loads: FloatArray) -> FloatArray:

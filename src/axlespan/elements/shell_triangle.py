@@ -121,7 +121,7 @@ def curvature(geometry: FlatGeometry, section: ShellSection, natural: FloatArray
 
     The means are those of sides with a relaxed flexibility, as in the hybrid elements.
     """
-    n_e, n_point = len(geometry.area), len(natural)
+    n_e = len(geometry.area)
     value, slope = shapes(3, natural), shape_slopes(3, natural)
     inverse = np.linalg.inv(np.einsum("an,eni->eai", slope[:, 0], geometry.plane))
     x, y = (inverse @ slope[:, 0]).transpose(1, 0, 2)  # slopes of the nodes' functions

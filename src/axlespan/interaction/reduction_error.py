@@ -2,7 +2,8 @@
 
 At sampled steps the forces that the basis leaves out of balance, (1+α) f^c - α f^p - M ü^c with
 f = F - C u̇ - K u in all d.o.f., are applied statically: K⁻¹ of them. What a basis of the lowest shapes lacks
-answers almost statically, so this estimates the displacement that is missing anywhere in the structure.
+answers almost statically, so this tells the order of magnitude of the displacement that is missing anywhere in
+the structure; dynamic amplification of the missing part is not in it.
 """
 
 from __future__ import annotations

@@ -60,7 +60,8 @@ class Settings:
     section_forces: tuple[str, ...] = ()  # sensors at which section forces are kept
     envelopes: tuple[str, ...] = ()  # quantities of which envelopes along the line are kept
     basis: str | ReducedBasis = "full"
-    basis_tolerance: float = 1e-3  # of the estimated error of a basis that is built here [-]
+    basis_modes: int = 0  # beside the Ritz vectors of a basis that is built here
+    basis_tolerance: float | None = None  # of the estimated error of a basis that is built here [-]
     notes: Sequence[str] = ()  # what was chosen by default, and warnings
 
 
@@ -80,7 +81,8 @@ def settings_for(
     section_forces: Sequence[str] | None = None,
     envelopes: Sequence[str] | None = None,
     basis: str | ReducedBasis = "full",
-    basis_tolerance: float = 1e-3,
+    basis_modes: int = 0,
+    basis_tolerance: float | None = None,
 ) -> Settings:
     """Check the settings of a run and fill in what the user left to us.
 
@@ -110,19 +112,20 @@ def settings_for(
         section_names(section_forces, sensors or {}),
         envelope_names(envelopes),
         basis,
-        float(basis_tolerance),
+        int(basis_modes),
+        basis_tolerance,
         tuple(notes),
     )
 
 
-def _check_basis(basis: str | ReducedBasis, tolerance: float, coupling: str) -> None:
+def _check_basis(basis: str | ReducedBasis, tolerance: float | None, coupling: str) -> None:
     if isinstance(basis, str) and basis not in ("full", "reduced"):
         raise InputError("must be full, reduced, or a ReducedBasis", field="basis", value=basis)
     if basis != "full" and coupling != "direct":
         raise InputError(
             "goes with the direct method only", field="basis", value="reduced", fix="Use method: direct"
         )
-    if not 0.0 < tolerance < 1.0:
+    if tolerance is not None and not 0.0 < tolerance < 1.0:
         raise InputError("must lie between 0 and 1", field="basis_tolerance", value=tolerance)
 
 

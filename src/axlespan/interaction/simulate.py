@@ -60,7 +60,7 @@ def simulate(
     section_forces: Sequence[str] | None = None,
     envelopes: Sequence[str] | None = None,
     basis: str | ReducedBasis = "full",
-    basis_tolerance: float = 1e-3,
+    basis_tolerance: float | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Result:
     """Simulate a crossing.
@@ -100,8 +100,8 @@ def simulate(
     basis : {"full", "reduced"} or ReducedBasis
         All d.o.f. of the structure, or a reduced basis, which is built here or given (see
         :func:`reduce_structure`). The result's facts hold its size and an estimate of its error.
-    basis_tolerance : float
-        Estimated error [-] that a basis built here must reach; it grows until it does.
+    basis_tolerance : float, optional
+        Estimated error [-] that a basis built here must reach; it grows until it does (four sizes at most).
     progress : callable, optional
         Called with the number of steps done, now and then.
 
@@ -150,7 +150,7 @@ def simulate_many(
     section_forces: Sequence[str] | None = None,
     envelopes: Sequence[str] | None = None,
     basis: str | ReducedBasis = "full",
-    basis_tolerance: float = 1e-3,
+    basis_tolerance: float | None = None,
 ) -> list[Result]:
     """Simulate several crossings of one structure side by side, from one factorization.
 
@@ -243,13 +243,15 @@ def _refined(plans: Sequence[Plan], progress: Callable[[int], None] | None) -> l
             _path_dofs(plans),
             blocks=blocks,
             cutoff=cutoff,
+            modes=plans[0].settings.basis_modes,
             extra=_translations(plans[0].crossing.structure),
             solver=plans[0].settings.solver,
         )
         seconds = time.perf_counter() - begun
         results = _driven(plans, progress, _prepare_reduced(plans, basis), basis, {"basis_time": seconds})
         worst = max(float(result.facts["reduction_error"]) for result in results)
-        if worst <= plans[0].settings.basis_tolerance:
+        tolerance = plans[0].settings.basis_tolerance
+        if tolerance is None or worst <= tolerance:
             break
     return results
 

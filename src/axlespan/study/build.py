@@ -10,23 +10,20 @@ from typing import Any
 import numpy as np
 
 from axlespan import irregularity as profiles
-from axlespan import vehicles
-from axlespan.bridges import SupportAt, continuous_beam, simple_span
 from axlespan.dynamics.alpha import Alpha
 from axlespan.errors import InputError
 from axlespan.interaction.crossing import Crossing
 from axlespan.interaction.plan import Plan, plan_for
 from axlespan.interaction.settings import Iteration, settings_for
 from axlespan.irregularity import Profile
-from axlespan.model import motions
-from axlespan.model.damping import Damping, Modal, Rayleigh
 from axlespan.running.structure import Structure
-from axlespan.study import case_crossing, case_damping, case_structure, case_support, case_train
+from axlespan.study import case_crossing, case_train
+from axlespan.study.build_structures import structure_of
+from axlespan.study.build_vehicles import vehicle_of
 from axlespan.study.case_analysis import EveryFew
-from axlespan.study.case_multibody import Multibody
 from axlespan.study.faults import InputErrors
 from axlespan.study.loader import LoadedCase
-from axlespan.vehicles import Placement, Train, Vehicle
+from axlespan.vehicles import Placement, Train
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +34,7 @@ class BuiltCase:
     crossing: Crossing
     plan: Plan
     warnings: tuple[str, ...]
+    facts: tuple[str, ...] = ()  # of an imported structure: what it was read as
 
     @property
     def title(self) -> str:
@@ -54,16 +52,17 @@ def build(loaded: LoadedCase) -> BuiltCase:
     """
     case = loaded.case
     with _pointing(loaded, "structure"):
-        structure = _structure(case.structure)
+        made = structure_of(case.structure)
     with _pointing(loaded, "train"):
         train = _train(loaded)
     with _pointing(loaded, "crossing"):
-        crossing = _crossing(loaded, structure, train)
+        crossing = _crossing(loaded, made.structure, train)
     with _pointing(loaded, "analysis"):
         method = _method(loaded)
         settings = settings_for(crossing, method=method, **_options(case.analysis, case.output))
         plan = plan_for(crossing, settings)
-    return BuiltCase(loaded, crossing, plan, loaded.warnings)
+    warnings = (*loaded.warnings, *(f"{loaded.source.file}: structure: {word}" for word in made.warnings))
+    return BuiltCase(loaded, crossing, plan, warnings, made.facts)
 
 
 @contextmanager
@@ -71,19 +70,26 @@ def _pointing(loaded: LoadedCase, section: str) -> Iterator[None]:
     """Turn errors of the layers below into errors at the place of the value, as far as it can be told."""
     try:
         yield
-    except InputErrors:
-        raise
+    except InputErrors as errors:
+        raise InputErrors(_pointed(loaded, section, error) for error in errors.errors) from errors
     except InputError as error:
         if error.place is not None:
             raise
-        source = loaded.source
-        for path in _candidates(section, error.field):
-            if source.knows(path):
-                raise source.blame(path, error.rule, error.fix) from error
-        words = InputError(
-            error.rule, field=error.field, **({"value": error.value} if error.has_value else {})
-        )
-        raise source.blame(section, str(words), error.fix) from error
+        raise _pointed(loaded, section, error) from error
+
+
+def _pointed(loaded: LoadedCase, section: str, error: InputError) -> InputError:
+    if error.place is not None:
+        return error
+    source, paths = loaded.source, _candidates(section, error.field)
+    if error.rule.startswith("is missing"):  # then what it is missing in stands there
+        paths += [path for path in paths if source.knows(path.rpartition(".")[0])]
+        return source.blame(paths[-1], error.rule, error.fix)
+    for path in paths:
+        if source.knows(path):
+            return source.blame(path, error.rule, error.fix)
+    words = InputError(error.rule, field=error.field, **({"value": error.value} if error.has_value else {}))
+    return source.blame(section, str(words), error.fix)
 
 
 def _candidates(section: str, field: str | None) -> list[str]:
@@ -95,91 +101,6 @@ def _candidates(section: str, field: str | None) -> list[str]:
     return places
 
 
-# --- structure -------------------------------------------------------------------------------------
-
-
-def _structure(case: case_structure.Structure) -> Structure:
-    if isinstance(case, case_structure.SimpleSpan):
-        return simple_span(
-            length=case.length,
-            youngs_modulus=case.youngs_modulus,
-            second_moment=case.second_moment,
-            mass_per_length=case.mass_per_length,
-            elements=case.elements,
-            area=case.area,
-            shear_area=case.shear_area,
-            poisson_ratio=0.2 if case.poisson_ratio is None else case.poisson_ratio,
-            damping=_damping(case.damping),
-            supports=_supports(case.supports),
-        )
-    if isinstance(case, case_structure.ContinuousBeam):
-        spans = case.spans
-        return continuous_beam(
-            spans=[span.length for span in spans],
-            youngs_modulus=[_given(span.youngs_modulus) for span in spans],
-            second_moment=[_given(span.second_moment) for span in spans],
-            mass_per_length=[_given(span.mass_per_length) for span in spans],
-            elements=[int(_given(span.elements)) for span in spans],
-            area=[span.area for span in spans],
-            shear_area=[span.shear_area for span in spans],
-            poisson_ratio=[0.2 if span.poisson_ratio is None else span.poisson_ratio for span in spans],
-            damping=_damping(case.damping),
-            supports=_supports(case.supports),
-        )
-    raise InputError("is not available in this version", field="kind", value=case.kind)
-
-
-def _given(value: float | None) -> float:
-    assert value is not None  # the schema completes the spans
-    return value
-
-
-def _damping(case: case_damping.StructuralDamping | None) -> Damping | None:
-    if case is None:
-        return None
-    if isinstance(case, case_damping.ModalDamping):
-        return Modal(case.ratio)
-    alpha, beta = case.coefficients()
-    return Rayleigh(alpha, beta)
-
-
-def _supports(cases: tuple[case_support.Support, ...] | None) -> list[SupportAt] | None:
-    if cases is None:
-        return None
-    result = []
-    for number, case in enumerate(cases):
-        assert not isinstance(case.at, str)  # the schema asks for positions on beams
-        result.append(
-            SupportAt(
-                position=case.at,
-                fixed=case.fixed,
-                stiffness=case.stiffness.given() if case.stiffness else None,
-                damping=case.damping.given() if case.damping else None,
-                motion={key: _motion(value) for key, value in case.motion.given().items()}
-                if case.motion
-                else None,
-                name=f"support{number + 1}",
-            )
-        )
-    if len(result) == 2:
-        return [_renamed(result[0], "left"), _renamed(result[1], "right")]
-    return result
-
-
-def _renamed(support: SupportAt, name: str) -> SupportAt:
-    return SupportAt(
-        support.position, support.fixed, support.stiffness, support.damping, support.motion, name
-    )
-
-
-def _motion(case: Any) -> motions.Motion:
-    if case.kind == "constant":
-        return motions.Constant(case.value)
-    if case.kind == "harmonic":
-        return motions.HarmonicMotion(case.amplitude, case.frequency, case.phase)
-    return motions.TableMotion([t for t, _ in case.points], [u for _, u in case.points], smooth=case.smooth)
-
-
 # --- train -----------------------------------------------------------------------------------------
 
 
@@ -188,7 +109,7 @@ def _train(loaded: LoadedCase) -> Train:
     built = []
     for number, entry in enumerate(entries):
         with _pointing(loaded, f"train.{number}"):
-            built.append(_vehicle(entry))
+            built.append(vehicle_of(entry, loaded.case.analysis.gravity))
     wheelbases = [max(point.behind for point in vehicle.contacts) for vehicle in built]
     heads = case_train.first_wheels(entries, wheelbases, [None] * len(built))
     placed = [
@@ -197,27 +118,6 @@ def _train(loaded: LoadedCase) -> Train:
     placed.sort(key=lambda item: item.behind)
     names = dict.fromkeys(vehicle.name for vehicle in built)
     return Train(tuple(placed), f"{len(placed)} × {', '.join(names)}" if len(placed) > 1 else built[0].name)
-
-
-def _vehicle(case: case_train.Entry) -> Vehicle:
-    if isinstance(case, case_train.SprungMass):
-        return vehicles.sprung_mass(
-            mass=case.mass, stiffness=case.stiffness, damping=case.damping, unsprung_mass=case.unsprung_mass
-        )
-    if isinstance(case, case_train.RigidMass):
-        return vehicles.rigid_mass(mass=case.mass)
-    if isinstance(case, case_train.AxleLoads):
-        return vehicles.axle_loads(loads=list(case.axle_loads), positions=list(case.wheel_positions))
-    if isinstance(case, Multibody):
-        return vehicles.multibody(
-            bodies=[vehicles.Body(b.name, b.mass, b.position, b.inertia) for b in case.bodies],
-            wheels=[vehicles.Wheel(w.position, w.mass, w.name) for w in case.wheels],
-            suspensions=[
-                vehicles.Suspension((s.between[0], s.between[1]), s.stiffness, s.damping, s.at)
-                for s in case.suspensions
-            ],
-        )
-    raise InputError("is not available in this version", field="vehicle", value=case.vehicle)
 
 
 # --- crossing and analysis ---------------------------------------------------------------------------
@@ -293,6 +193,9 @@ def _options(analysis: Any, output: Any) -> Mapping[str, Any]:
         "every": output.every,
         "sensors": output.sensors,
         "iteration": Iteration(**iteration),
+        "basis": analysis.basis,
+        "basis_modes": analysis.modes or 0,
+        "basis_tolerance": analysis.basis_tolerance,
         "fields": output.fields.every if isinstance(output.fields, EveryFew) else output.fields,
         "section_forces": output.section_forces,
         "envelopes": output.envelopes,

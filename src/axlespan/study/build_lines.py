@@ -76,7 +76,9 @@ def _on_beams(built: MeshModel, chain: IntArray) -> bool:
         return False
     beams = [part.nodes for part in built.model.parts if isinstance(part, BeamPart)]
     joined = {frozenset(pair) for nodes in beams for pair in nodes.tolist()}
-    return bool(surfaces == [] or all(frozenset(pair) in joined for pair in itertools.pairwise(chain.tolist())))
+    return bool(
+        surfaces == [] or all(frozenset(pair) in joined for pair in itertools.pairwise(chain.tolist()))
+    )
 
 
 def _nodes_along(built: MeshModel, points: FloatArray, tolerance: float | None, place: str) -> IntArray:

@@ -3,27 +3,17 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
 
 import numpy as np
 
-from axlespan.running.path import PolynomialPath
 from axlespan.running.structure import Structure
 from axlespan.study.build_lines import lines_of
 from axlespan.study.build_model import MeshModel, model_of
 from axlespan.study.build_supports import damping_of
+from axlespan.study.built import BuiltStructure, line_fact, mass_facts
 from axlespan.study.case_imported import MeshStructure
 from axlespan.study.mesh_checks import require_held, warnings_of
 from axlespan.study.mesh_sections import section_kind
-
-
-@dataclass(frozen=True, eq=False)
-class BuiltStructure:
-    """A structure, and words about where it came from."""
-
-    structure: Structure
-    facts: tuple[str, ...] = ()  # lines for people: counts, masses, how the running line goes
-    warnings: tuple[str, ...] = ()
 
 
 def structure_of_mesh(case: MeshStructure) -> BuiltStructure:
@@ -40,9 +30,7 @@ def structure_of_mesh(case: MeshStructure) -> BuiltStructure:
     lines = lines_of(case, built)
     main = next(iter(lines.values()))
     name = case.file.stem if case.file is not None else "mesh"
-    structure = Structure(
-        built.compiled.system, lines, name, built.model, {"length": main.stop - main.start}
-    )
+    structure = Structure(built.compiled.system, lines, name, built.model, {"length": main.stop - main.start})
     facts = (*_mesh_facts(built), *mass_facts(structure), *(line_fact(*item) for item in lines.items()))
     return BuiltStructure(structure, facts, warnings_of(built))
 
@@ -63,18 +51,3 @@ def _mesh_facts(built: MeshModel) -> list[str]:
         f"mesh        {mesh.n_node} nodes, {blocks}; {', '.join(sections)}",
         f"d.o.f.      {built.compiled.system.size}, {supports} of them at supports",
     ]
-
-
-def mass_facts(structure: Structure) -> list[str]:
-    """Mass that moves along each axis, as other programs print it."""
-    system = structure.system
-    there = [axis for axis in "xyz" if axis in system.components]
-    masses = ", ".join(f"{axis} {system.total_mass(axis) / 1e3:.6g} t" for axis in there)
-    return [f"mass        {masses}"]
-
-
-def line_fact(name: str, path: PolynomialPath) -> str:
-    """Where a running line goes."""
-    pieces, power = len(path.breaks) - 1, path.coefficients.shape[2] - 1
-    degree = {1: "linear", 2: "quadratic", 3: "cubic"}.get(power, f"of degree {power}")
-    return f"line        {name}: {path.start:g} to {path.stop:g} m, {pieces} pieces, {degree}"

@@ -41,9 +41,7 @@ class MeshModel:
     compiled: Compiled
 
 
-def model_of(
-    case: Mesh, supports: Sequence[case_nodes.NodeSupport], damping: Damping | None
-) -> MeshModel:
+def model_of(case: Mesh, supports: Sequence[case_nodes.NodeSupport], damping: Damping | None) -> MeshModel:
     """Build and compile the model of a mesh.
 
     Parameters
@@ -173,7 +171,7 @@ def _with_ties(model: Model, case: Mesh, book: NodeBook) -> Model:
             )
             raise InputError(rule, field=place, fix="Use rigid_links, or raise the tolerance")
         active = active_components(model)
-        both = active[slaves] & active[partners]
+        both = np.logical_and(active[slaves], active[partners])
         wanted = component_indices(tie.components or COMPONENTS)
         ties = [
             Tie((slave, COMPONENTS[c]), ((master, COMPONENTS[c], 1.0),))

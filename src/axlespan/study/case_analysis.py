@@ -19,7 +19,7 @@ from axlespan.units import HERTZ_STIFFNESS, NUMBER, TIME
 METHODS: Final = ("direct", "iterative", "refactored")
 BASES: Final = ("full", "reduced")
 CONTACTS: Final = ("rigid", "unilateral", "hertz", "linear-spring")
-AVAILABLE_BASES: Final = ("full",)
+AVAILABLE_BASES: Final = ("full", "reduced")
 AVAILABLE_CONTACTS: Final = ("rigid",)
 SOLVERS: Final = ("auto", "banded", "superlu", "pardiso", "cholmod")
 AUTO: Final = "auto"
@@ -96,7 +96,9 @@ class Analysis(Part):
     basis: Annotated[str, OneOf(BASES)] = "full"
     """All d.o.f. of the structure, or a reduced basis of modes."""
     modes: Count | None = None
-    """Number of modes of a reduced basis."""
+    """Number of modes that a reduced basis holds beside its Ritz vectors; none when left out."""
+    basis_tolerance: Annotated[float, Measured(RATIO, above=0.0, at_most=0.5)] | None = None
+    """Estimated error, relative to the largest displacement, that a reduced basis must reach by itself."""
     contact: Annotated[Contact, Field(json_schema_extra=_CONTACTS.words_in_schema)] = RigidContact(
         kind="rigid"
     )
@@ -148,6 +150,7 @@ class Analysis(Part):
             ("relaxation", "method", "iterative"),
             ("max_iterations", "method", "iterative"),
             ("modes", "basis", "reduced"),
+            ("basis_tolerance", "basis", "reduced"),
         ):
             if getattr(self, name) is not None and getattr(self, key) != wanted:
                 raise InputError(

@@ -233,7 +233,7 @@ class Mesh(Part):
     """Whether the model is a plane one, in x and z."""
     merge: Annotated[float, Measured(LENGTH, above=0.0, believable=(1e-9, 1.0))] | None = None
     """Nodes no farther apart than this become one."""
-    points: Annotated[Mapping[Name, Point], Field(examples=["{bearing: [0 m, 0 m, -0.5 m]}"])] = {}  # noqa: RUF012
+    points: Annotated[Mapping[Name, Point], Field(examples=["{bearing: [0 m, 0 m, -0.5 m]}"])] = {}
     """Further nodes by their names, for links, springs, masses and supports."""
     materials: Annotated[
         Mapping[str, Material],

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
+from axlespan.elements.continuum import Formulation
 from axlespan.errors import InputError
 from axlespan.model import from_mesh
+from axlespan.model.continuum_parts import PlaneState
 from axlespan.model.materials import BeamSection, Material
 from axlespan.model.mesh import CELL_KINDS
 from axlespan.model.mesh import Mesh as MeshValue
@@ -126,7 +128,7 @@ def _check_values(section: Section, kind: str, place: str, in_plane: bool) -> No
 
 
 def _made(section: Section, kind: str, material: Material) -> from_mesh.Section:
-    formulation = "full" if section.formulation == "full" else "incompatible"
+    formulation: Formulation = "full" if section.formulation == "full" else "incompatible"
     lumped = bool(section.lumped_mass)
     if kind == "solid":
         return from_mesh.Solids(material, formulation=formulation, lumped_mass=lumped)
@@ -134,10 +136,8 @@ def _made(section: Section, kind: str, material: Material) -> from_mesh.Section:
     if kind == "shell":
         return from_mesh.Shells(material, thickness, offset[0], lumped_mass=lumped)
     if kind == "plane":
-        state = "strain" if section.state == "strain" else "stress"
-        return from_mesh.Planes(
-            material, thickness, state=state, formulation=formulation, lumped_mass=lumped
-        )
+        state: PlaneState = "strain" if section.state == "strain" else "stress"
+        return from_mesh.Planes(material, thickness, state=state, formulation=formulation, lumped_mass=lumped)
     if kind == "bar":
         return from_mesh.Bars(material, section.area or 0.0)
     beam = BeamSection(

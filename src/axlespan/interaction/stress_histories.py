@@ -1,0 +1,48 @@
+"""Stresses of solids and resultants of shells at sensors, at every n-th step."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse as sp
+
+from axlespan.interaction.plan import Plan
+from axlespan.running.stress_points import StressPoints
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+
+class StressHistories:
+    """Elastic stresses, from the displacements of the elements at the sensors."""
+
+    def __init__(self, plan: Plan) -> None:
+        self._plan, wanted = plan, plan.settings.stresses
+        system = plan.crossing.structure.system
+        places = np.array([plan.settings.sensors[name] for name in wanted], float)
+        found = StressPoints((), sp.csr_array((0, system.size)))
+        if wanted:
+            found = StressPoints.at(plan.crossing.structure, wanted, places)
+        self.names = found.names
+        free = sp.csc_array(found.rows[:, system.free])
+        self.free_dofs = np.unique(free.nonzero()[1]).astype(np.int64)
+        self._rows = sp.csr_array(free[:, self.free_dofs])
+        self._moved = sp.csr_array(found.rows[:, system.prescribed[plan.moving]])
+        n_kept = plan.settings.steps // plan.settings.every + 1
+        self._table = np.zeros((n_kept, len(self.names)))
+
+    def look(self, steps: IntArray, near: FloatArray, positions: FloatArray, forces: FloatArray) -> None:
+        """Look at consecutive steps: ``near`` (3, n_step, n_free) of ``free_dofs``."""
+        if not self.names:
+            return
+        plan = self._plan
+        kept = np.flatnonzero(steps % plan.settings.every == 0)
+        values = (self._rows @ near[0, kept].T).T
+        if len(plan.moving):
+            times, motions = plan.times_of(steps[kept]), plan.crossing.structure.system.motions
+            values = values + (self._moved @ np.array([motions[j].value(times) for j in plan.moving])).T
+        self._table[steps[kept] // plan.settings.every] = values
+
+    def histories(self, n: int) -> FloatArray:
+        """The first n kept (n, n_stress)."""
+        return np.asarray(self._table[:n])
