@@ -477,3 +477,25 @@ class TestSupports:
         model = model.with_supports(np.arange(10_000), ("x", "y", "z"))
         assert len(model.supports) == 30_000
         assert model.supports[-1].name == "n10000.z"
+
+
+def test_triangles_and_quadrilaterals_of_shells_share_a_constant_membrane_state():
+    """One mesh of both kinds, pulled: the stress is the same everywhere (mixed sides are told to the triangles)."""
+    points = np.array([[0, 0, 0], [1, 0, 0], [2.2, 0, 0], [0, 1, 0], [1.1, 1, 0], [2.2, 1, 0]], float)
+    quads = CellBlock("quad4", np.array([[0, 1, 4, 3]]), np.array([1]))
+    triangles = CellBlock("tri3", np.array([[1, 2, 5], [1, 5, 4]]), np.array([2, 3]))
+    everything = {"plate": ((0, np.array([0])), (1, np.array([0, 1])))}
+    mesh = Mesh(points, (quads, triangles), {}, everything, np.arange(1, 7))
+    shells = Shells(Material(2e11, 0.3, 7850.0), thickness=0.01)
+    model = Model(plane=False).with_mesh(mesh, {"plate": shells})
+    stiffness = compile_model(model).system.stiffness.toarray()
+    table = compile_model(model).table.number
+    strain = 1e-3
+    u = np.zeros(stiffness.shape[0])
+    u[table[:, 0]] = strain * points[:, 0]
+    u[table[:, 1]] = -0.3 * strain * points[:, 1]
+    forces = stiffness @ u
+    pull = 2e11 * strain * 0.01
+    assert np.allclose([forces[table[n, 0]] for n in (2, 5)], 0.5 * pull, rtol=1e-9)
+    assert abs(forces[table[1, 0]]) < 1e-9 * pull
+    assert abs(forces[table[4, 0]]) < 1e-9 * pull

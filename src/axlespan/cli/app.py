@@ -49,7 +49,8 @@ def run(
     ] = False,
     figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw figures.")] = True,
     paraview: Annotated[
-        bool, typer.Option("--paraview", help="Write fields.pvd: structure and wheels over time, for ParaView.")
+        bool,
+        typer.Option("--paraview", help="Write fields.pvd: structure and wheels over time, for ParaView."),
     ] = False,
 ) -> None:
     """Simulate a case: writes result.nc, summary.json and figures."""
@@ -70,7 +71,8 @@ def check(case: _CASE) -> None:
 def modes(
     case: _CASE,
     number: Annotated[
-        int | None, typer.Option("-n", "--number", min=1, help="Number of modes; 10, or all if there are fewer.")
+        int | None,
+        typer.Option("-n", "--number", min=1, help="Number of modes; 10, or all if there are fewer."),
     ] = None,
     output: Annotated[
         Path | None, typer.Option("-o", "--output", help="Folder for modes.json and figures of the shapes.")

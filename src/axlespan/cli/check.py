@@ -10,6 +10,7 @@ from axlespan.cli.messages import DONE, refuse, say, warn
 from axlespan.errors import InputError
 from axlespan.linalg.eigen import lowest_modes
 from axlespan.linalg.factor import choose
+from axlespan.model.system import System
 from axlespan.study.build import BuiltCase, build
 from axlespan.study.loader import load_case
 from axlespan.vehicles import Vehicle
@@ -31,7 +32,8 @@ def check_case(case: Path) -> int:
 def _description(built: BuiltCase) -> list[str]:
     plan, structure, train = built.plan, built.crossing.structure, built.crossing.train
     settings, system = plan.settings, structure.system
-    modes = lowest_modes(plan.structure.K, plan.structure.M, min(3, plan.structure.size))
+    wanted = 10 if built.facts else 3  # ten of an imported structure, to compare with where it came from
+    modes = lowest_modes(plan.structure.K, plan.structure.M, min(wanted, plan.structure.size))
     head = plan.crossing.start + plan.crossing.motion.distance(plan.times[[0, -1]])
     choice = choose(plan.structure.K)
     kept = settings.steps // settings.every + 1
@@ -43,8 +45,9 @@ def _description(built: BuiltCase) -> list[str]:
     )
     lines = [
         built.title,
-        f"  structure   {structure.name}, {structure.length:g} m, {plan.structure.size} free d.o.f., mass "
-        f"{system.total_mass() / 1e3:.6g} t, frequencies {', '.join(f'{f:.4g}' for f in modes.frequencies)} Hz",
+        f"  structure   {structure.name}, {structure.length:g} m, {plan.structure.size} free d.o.f., "
+        f"{_mass(system)}frequencies {', '.join(f'{f:.4g}' for f in modes.frequencies)} Hz",
+        *(f"  {fact}" for fact in built.facts),
         f"  train       {train.name}, {_counted(len(train.placements), 'vehicle')}, {_counted(plan.rows.n_contact, 'wheel')}, "
         f"{train.wheelbase:g} m from first wheel to last",
         *_vehicle_lines(built),
@@ -56,6 +59,12 @@ def _description(built: BuiltCase) -> list[str]:
     ]
     lines += [f"  note        {note}" for note in settings.notes]
     return [*lines, "The case is in order. Run it with: axlespan run CASE -o FOLDER"]
+
+
+def _mass(system: System) -> str:
+    """Mass that moves vertically; modal coordinates and rows without names don't tell."""
+    mass = system.total_mass()
+    return f"mass {mass / 1e3:.6g} t, " if mass > 0.0 else ""
 
 
 def _counted(number: int, what: str) -> str:

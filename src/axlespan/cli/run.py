@@ -24,9 +24,7 @@ from axlespan.study.loader import load_case
 _FIELDS = 100
 
 
-def run_case(
-    case: Path, output: Path | None, *, force: bool, figures: bool, paraview: bool = False
-) -> int:
+def run_case(case: Path, output: Path | None, *, force: bool, figures: bool, paraview: bool = False) -> int:
     """Run a case; the exit code."""
     folder = output or case.with_suffix("")
     try:

@@ -1,4 +1,4 @@
-"""What a result has only when asked for, as named arrays: section forces, envelopes, fields."""
+"""What a result has only when asked for, as named arrays: section forces, stresses, envelopes, fields."""
 
 from __future__ import annotations
 
@@ -21,6 +21,11 @@ SECTION_VARIABLES: dict[str, tuple[str, str, str]] = {
     "section_shear": ("section", "N", "shear force of the beams, dM/ds, right of an axle over the section"),
     "section_normal": ("section", "N", "normal force of the beams, tension positive"),
     "section_torsion": ("section", "N m", "torsional moment of the beams"),
+    "stress_history": (
+        "stress",
+        "N/m^2, of shells N/m or N m/m",
+        "elastic stresses of solids, resultants of shells (x along global x)",
+    ),
 }
 # end of the name -> attribute of an envelope
 _SIDES = {
@@ -59,6 +64,8 @@ def extra_coordinates(result: Result) -> dict[str, Variable]:
     found: dict[str, Variable] = {}
     if result.section:
         found["section"] = _names("section", result.section, "sensor at which section forces are kept")
+    if result.stress:
+        found["stress"] = _names("stress", result.stress, "sensor.component")
     if result.envelopes is not None:
         meaning = "position along the running line"
         found["station"] = Variable(("station",), result.envelopes.position, "m", meaning)
@@ -69,10 +76,10 @@ def extra_coordinates(result: Result) -> dict[str, Variable]:
 
 
 def extra_variables(result: Result) -> dict[str, Variable]:
-    """Section forces, envelopes and fields of a result, as far as it has them."""
+    """Section forces, stresses, envelopes and fields of a result, as far as it has them."""
     found: dict[str, Variable] = {}
-    if result.section:
-        for name, (dimension, unit, meaning) in SECTION_VARIABLES.items():
+    for name, (dimension, unit, meaning) in SECTION_VARIABLES.items():
+        if getattr(result, dimension):
             found[name] = Variable(("time", dimension), getattr(result, name), unit, meaning)
     if result.envelopes is not None:
         for quantity, table in result.envelopes.tables.items():
@@ -98,9 +105,9 @@ def extras_from(arrays: Mapping[str, npt.NDArray[Any]]) -> dict[str, Any]:
         If an array of an extra that is there is missing.
     """
     found: dict[str, Any] = {}
-    if "section" in arrays:
-        found["section"] = tuple(arrays["section"].tolist())
-        found |= {name: arrays[name] for name in SECTION_VARIABLES}
+    for name, (dimension, *_) in SECTION_VARIABLES.items():
+        if dimension in arrays:
+            found |= {dimension: tuple(arrays[dimension].tolist()), name: arrays[name]}
     if "station" in arrays:
         quantities = [quantity for quantity in UNITS if f"envelope_{quantity}_largest" in arrays]
         tables = {

@@ -1,4 +1,4 @@
-"""What a run is asked to keep beside the histories: fields, section forces, envelopes."""
+"""What a run is asked to keep beside the histories: fields, section forces, stresses, envelopes."""
 
 from __future__ import annotations
 
@@ -40,8 +40,8 @@ def field_steps(fields: Sequence[float] | int | None, time_step: float, steps: i
     return tuple(sorted(chosen))
 
 
-def section_names(names: Sequence[str] | None, sensors: Mapping[str, object]) -> tuple[str, ...]:
-    """Check the names of the sensors at which section forces are kept.
+def sensor_names(names: Sequence[str] | None, sensors: Mapping[str, object], field: str) -> tuple[str, ...]:
+    """Check the names of the sensors at which something more is kept.
 
     Raises
     ------
@@ -51,9 +51,9 @@ def section_names(names: Sequence[str] | None, sensors: Mapping[str, object]) ->
     chosen = tuple(names or ())
     for number, name in enumerate(chosen):
         if name not in sensors:
-            raise _named(nearest(name, list(sensors), "sensor"), f"section_forces.{number}", name)
+            raise _named(nearest(name, list(sensors), "sensor"), f"{field}.{number}", name)
         if name in chosen[:number]:
-            raise InputError("is named twice", field=f"section_forces.{number}", value=name)
+            raise InputError("is named twice", field=f"{field}.{number}", value=name)
     return chosen
 
 

@@ -20,6 +20,7 @@ from axlespan.model.motions import Constant
 from axlespan.model.system import System
 from axlespan.running.path import PolynomialPath
 from axlespan.running.sections import BeamSections
+from axlespan.running.stress_points import StressPoints
 from axlespan.running.structure import Structure
 from axlespan.vehicles.train import Train
 from axlespan.vehicles.vehicle import Vehicle
@@ -291,11 +292,14 @@ def _check_sensors(structure: Structure, settings: Settings) -> None:
 
 
 def _check_sections(structure: Structure, settings: Settings) -> None:
-    """Section forces are those of beams under the line."""
+    """Section forces are those of beams under the line, stresses those of solids and shells."""
     line = structure.line()
     if settings.section_forces:
         places = np.array([settings.sensors[name] for name in settings.section_forces], float)
         BeamSections.at(structure, *line.locate(places), wanted="section_forces")
+    if settings.stresses:
+        places = np.array([settings.sensors[name] for name in settings.stresses], float)
+        StressPoints.at(structure, settings.stresses, places)
     if any(name in QUANTITIES for name in settings.envelopes):
         segments = np.arange(len(line.breaks) - 1)
         BeamSections.at(structure, segments, np.zeros(len(segments)), wanted="envelopes")

@@ -19,8 +19,9 @@ from axlespan.interaction.reactions import Reactions
 from axlespan.interaction.result import Result
 from axlespan.interaction.section_forces import SectionHistories
 from axlespan.interaction.settings import DAMPED_ALPHA
+from axlespan.interaction.stress_histories import StressHistories
 from axlespan.interaction.tape import LaneTape
-from axlespan.interaction.watchers import Watcher, Watchers
+from axlespan.interaction.watchers import Keeper, Watcher, Watchers
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -59,7 +60,9 @@ class Recorder:
         self.compatibility, self.energy = CompatibilityMonitor(), EnergyMonitor(plan)
         self.fields = FieldWatcher(plan)
         self.watchers = Watchers([self.energy, self.fields, *watchers])
-        self.sections, self.envelopes = SectionHistories(plan), EnvelopeMonitor(plan)
+        self.sections, self.stresses = SectionHistories(plan), StressHistories(plan)
+        self.envelopes = EnvelopeMonitor(plan)
+        self._keepers: tuple[Keeper, ...] = (self.sections, self.stresses, self.envelopes)
         self.balance, self.tension = BalanceMonitor(plan, self.reactions.paths), TensionMonitor(plan)
         n_sensor = len(self._sensor_dofs)
         self.histories = Histories(
@@ -70,7 +73,7 @@ class Recorder:
             np.zeros((n_kept, len(plan.crossing.structure.system.prescribed))),
         )
         own = np.concatenate([self._sensor_dofs.ravel(), self.reactions.free_dofs])
-        more = [self.sections.free_dofs, self.envelopes.free_dofs]
+        more = [keeper.free_dofs for keeper in self._keepers]
         self.selected = np.unique(np.concatenate([own, *more]))
         self._inverse, *self._more = (np.searchsorted(self.selected, dofs) for dofs in (own, *more))
         self.completed = 0  # time index of the last good step
@@ -147,8 +150,8 @@ class Recorder:
         reactions = self.reactions.of(steps, values[:, :, n_sensor:], positions, tape.forces)
         self.balance.look(steps, tape.sums, reactions, positions, tape.forces)
         self.tension.look(steps, positions, tape.forces)
-        for look, at in zip((self.sections.look, self.envelopes.look), self._more, strict=True):
-            look(steps, tape.near[:, :, at], positions, tape.forces)
+        for keeper, at in zip(self._keepers, self._more, strict=True):
+            keeper.look(steps, tape.near[:, :, at], positions, tape.forces)
         kept = np.flatnonzero(steps % self.every == 0)
         into = steps[kept] // self.every
         h = self.histories
@@ -199,6 +202,8 @@ class Recorder:
             support_reaction=h.support_reaction[:n],
             section=self.sections.names,
             **self.sections.histories(n),
+            stress=self.stresses.names,
+            stress_history=self.stresses.histories(n),
             envelopes=self.envelopes.envelopes(),
             fields=self.fields.fields(self.completed),
             outcome=outcome,

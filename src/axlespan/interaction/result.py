@@ -71,6 +71,8 @@ class Result:
     section_shear: FloatArray = field(default_factory=_none)  # (n_time, n_section) [N]
     section_normal: FloatArray = field(default_factory=_none)  # (n_time, n_section) [N]
     section_torsion: FloatArray = field(default_factory=_none)  # (n_time, n_section) [N m]
+    stress: tuple[str, ...] = ()  # sensor.component
+    stress_history: FloatArray = field(default_factory=_none)  # (n_time, n_stress) [N/m^2, N/m, N m/m]
     envelopes: Envelopes | None = None  # extremes along the line
     fields: Fields | None = None  # the whole structure at chosen times
 

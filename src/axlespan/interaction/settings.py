@@ -11,7 +11,7 @@ from axlespan.dynamics.alpha import Alpha
 from axlespan.dynamics.reduction import ReducedBasis
 from axlespan.errors import InputError
 from axlespan.interaction.crossing import Crossing
-from axlespan.interaction.outputs import envelope_names, field_steps, section_names
+from axlespan.interaction.outputs import envelope_names, field_steps, sensor_names
 
 #: Ways of coupling vehicle and structure.
 COUPLINGS = ("direct", "iterative", "refactored", "literal")
@@ -57,7 +57,8 @@ class Settings:
     sensors: Mapping[str, float] = field(default_factory=dict)  # name -> position [m]
     iteration: Iteration = field(default_factory=Iteration)
     fields: Sequence[int] = ()  # time indices of whole fields
-    section_forces: tuple[str, ...] = ()  # sensors at which section forces are kept
+    section_forces: tuple[str, ...] = ()  # sensors at which section forces of beams are kept
+    stresses: tuple[str, ...] = ()  # sensors at which stresses of solids and shells are kept
     envelopes: tuple[str, ...] = ()  # quantities of which envelopes along the line are kept
     basis: str | ReducedBasis = "full"
     basis_modes: int = 0  # beside the Ritz vectors of a basis that is built here
@@ -79,6 +80,7 @@ def settings_for(
     iteration: Iteration | None = None,
     fields: Sequence[float] | int | None = None,
     section_forces: Sequence[str] | None = None,
+    stresses: Sequence[str] | None = None,
     envelopes: Sequence[str] | None = None,
     basis: str | ReducedBasis = "full",
     basis_modes: int = 0,
@@ -109,7 +111,8 @@ def settings_for(
         dict(sensors or {}),
         iteration or Iteration(),
         field_steps(fields, float(time_step), int(steps)),
-        section_names(section_forces, sensors or {}),
+        sensor_names(section_forces, sensors or {}, "section_forces"),
+        sensor_names(stresses, sensors or {}, "stresses"),
         envelope_names(envelopes),
         basis,
         int(basis_modes),

@@ -58,6 +58,7 @@ def simulate(
     iteration: Iteration | None = None,
     fields: Sequence[float] | int | None = None,
     section_forces: Sequence[str] | None = None,
+    stresses: Sequence[str] | None = None,
     envelopes: Sequence[str] | None = None,
     basis: str | ReducedBasis = "full",
     basis_tolerance: float | None = None,
@@ -94,6 +95,8 @@ def simulate(
         many steps; see :class:`axlespan.interaction.fields.Fields`.
     section_forces : sequence of str, optional
         Names of sensors at which moment, shear, normal force and torsion of the beams are kept.
+    stresses : sequence of str, optional
+        Names of sensors at which stresses of the solids or resultants of the shells under the line are kept.
     envelopes : sequence of str, optional
         Quantities whose extremes along the line are kept: "moment", "shear", "normal", "torsion",
         "deflection", "acceleration".
@@ -129,6 +132,7 @@ def simulate(
         iteration=iteration,
         fields=fields,
         section_forces=section_forces,
+        stresses=stresses,
         envelopes=envelopes,
         basis=basis,
         basis_tolerance=basis_tolerance,
@@ -148,6 +152,7 @@ def simulate_many(
     every: int = 1,
     fields: Sequence[float] | int | None = None,
     section_forces: Sequence[str] | None = None,
+    stresses: Sequence[str] | None = None,
     envelopes: Sequence[str] | None = None,
     basis: str | ReducedBasis = "full",
     basis_tolerance: float | None = None,
@@ -160,7 +165,8 @@ def simulate_many(
         All with the same ``structure``; trains, speeds, starts and irregularities may differ.
     steps : int or sequence of int
         Number of time steps, one for all or one each.
-    time_step, method, sensors, footprint, solver, every, fields, section_forces, envelopes, basis, basis_tolerance
+    time_step, method, sensors, footprint, solver, every, fields, section_forces, stresses, envelopes, basis,
+    basis_tolerance
         As for :func:`simulate`. The defaults of method and footprint follow from all trains together.
 
     Returns
@@ -198,6 +204,7 @@ def simulate_many(
             every=every,
             fields=fields,
             section_forces=section_forces,
+            stresses=stresses,
             envelopes=envelopes,
             basis=basis,
             basis_tolerance=basis_tolerance,

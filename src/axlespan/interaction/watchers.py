@@ -1,4 +1,4 @@
-"""Watchers: objects that look at the complete state of a crossing after some of its steps."""
+"""What looks on: watchers see complete states after some steps, keepers some d.o.f. after all steps."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import numpy.typing as npt
 from axlespan.dynamics.integrator import State
 
 FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
 
 
 class Watcher(Protocol):
@@ -28,6 +29,19 @@ class Watcher(Protocol):
 
         A step may come again with the same values, when a crossing beside it had to leave.
         """
+        ...
+
+
+class Keeper(Protocol):
+    """Works up what the tape holds of some d.o.f. of the structure, stretch by stretch."""
+
+    @property
+    def free_dofs(self) -> IntArray:
+        """The free d.o.f. (n,) that it needs, sorted."""
+        ...
+
+    def look(self, steps: IntArray, near: FloatArray, positions: FloatArray, forces: FloatArray) -> None:
+        """Look at consecutive good steps: ``near`` (3, n_step, n) of ``free_dofs``, wheels (n_step, n_contact)."""
         ...
 
 

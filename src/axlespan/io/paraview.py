@@ -15,8 +15,8 @@ from axlespan.interaction.fields import Fields
 from axlespan.interaction.result import Result
 from axlespan.io.vtk_xml import LINE, VERTEX, Cells, Grid, write_collection, write_grid
 from axlespan.linalg.eigen import Modes
-from axlespan.model.model import Model
 from axlespan.model.modal import full_shapes
+from axlespan.model.model import Model
 from axlespan.model.nodal import nodal_values
 from axlespan.model.parts import Part, SpringPart
 from axlespan.model.stresses import ElementForces

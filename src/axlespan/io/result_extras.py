@@ -1,4 +1,4 @@
-"""Section forces, envelopes and fields in and out of result.nc."""
+"""Section forces, stresses, envelopes and fields in and out of result.nc."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import numpy.typing as npt
 from axlespan.interaction.extras import extra_coordinates, extra_variables, extras_from
 from axlespan.interaction.result import Result
 
-_NAMES = ("station", "field_time", "section", "dof")
+_TEXTS, _NUMBERS = ("section", "stress", "dof"), ("station", "field_time", "stress_history")
 
 
 def write_extras(file: h5netcdf.File, result: Result) -> None:
@@ -44,9 +44,9 @@ def read_extras(file: h5py.File) -> dict[str, Any]:
     """What :func:`write_extras` wrote, as arguments of a Result; empty if there is nothing."""
     arrays: dict[str, npt.NDArray[Any]] = {}
     for name, data in file.items():
-        if name in ("section", "dof"):
+        if name in _TEXTS:
             arrays[name] = np.array(data.asstr()[...], dtype=object)
-        elif name in _NAMES or name.startswith(("section_", "envelope_", "field_")):
+        elif name in _NUMBERS or name.startswith(("section_", "envelope_", "field_")):
             arrays[name] = np.asarray(data[...], dtype=np.float64)
     return extras_from(arrays)
 

@@ -263,11 +263,14 @@ def _curved(parts: list[_MeshPart], points: FloatArray) -> list[_MeshPart]:
         return parts
     tables = {kind: np.concatenate([part.nodes for part in some]) for kind, some in found.items()}
     turning = shells.surface_turning(points, tables)
+    both = "shell3" in tables and "shell4" in tables
+    sides = shells.mixed_sides(tables["shell3"], tables["shell4"]) if both else None
     turned: dict[int, ShellPart] = {}
     for kind, some in found.items():
         ends = np.cumsum([len(part.nodes) for part in some])
-        for part, angle in zip(some, np.split(turning[kind], ends[:-1]), strict=True):
-            turned[id(part)] = replace(part, turning=angle)
+        for part, angle, end in zip(some, np.split(turning[kind], ends[:-1]), ends, strict=True):
+            mixed = sides[end - len(part.nodes) : end] if sides is not None and kind == "shell3" else None
+            turned[id(part)] = replace(part, turning=angle, mixed=mixed)
     return [turned.get(id(part), part) for part in parts]
 
 

@@ -70,7 +70,7 @@ def _sizes(system: System, modes: Modes) -> FloatArray:
     shapes = np.abs(full_shapes(system, modes))
     moves = np.array([component in ("x", "y", "z") for component in system.components])
     sizes = shapes[moves].max(axis=0, initial=0.0)
-    return np.where(sizes > 1e-12 * shapes.max(axis=0), sizes, shapes.max(axis=0))
+    return np.asarray(np.where(sizes > 1e-12 * shapes.max(axis=0), sizes, shapes.max(axis=0)))
 
 
 def _damping_ratios(system: System, modes: Modes) -> FloatArray:

@@ -42,6 +42,9 @@ class ShellPart:
     turning: FloatArray = field(
         default_factory=lambda: np.zeros(())
     )  # of a curved surface, as the thickness [rad]
+    mixed: npt.NDArray[np.bool_] | None = (
+        None  # (n_element, 3) sides of triangles that a quadrilateral shares
+    )
     labels: IntArray | None = None  # (n_element,) what errors call the elements; 1, 2, … when left out
     components: tuple[str, ...] = COMPONENTS
 
@@ -116,7 +119,7 @@ class ShellPart:
         if not np.all(np.isfinite(reach)):
             raise InputError("must be finite", field="offset", value=offset)
         turned = np.asarray(turning, float)
-        return cls(name, kind, elements, material, density, t, reach, lumped_mass, turned, labels)
+        return cls(name, kind, elements, material, density, t, reach, lumped_mass, turned, labels=labels)
 
     @property
     def shell_kind(self) -> shells.ShellKind:
@@ -136,6 +139,7 @@ class ShellPart:
             thickness=_taken(self.thickness, elements),
             offset=_taken(self.offset, elements),
             turning=_taken(self.turning, elements),
+            mixed=None if self.mixed is None else self.mixed[elements],
             labels=self._labels()[elements],
         )
 
@@ -150,7 +154,9 @@ class ShellPart:
         self.check(points)
         x, kind, t, reach = self.coordinates(points), self.shell_kind, self.thickness, self.offset
         return ElementMatrices(
-            shells.stiffness(kind, x, self.material, t, reach, self.turning),
+            shells.stiffness(
+                kind, x, self.material, t, reach, self.turning, False if self.mixed is None else self.mixed
+            ),
             shells.mass(kind, x, self.density, t, reach, self.lumped_mass),
         )
 

@@ -37,9 +37,7 @@ class LineGeometry:
         rows = path.rows(s, structure.system.size)
         independent = structure.system.independent
         model = structure.model
-        lift, x, y = (
-            rows @ rigid_motion(model, component)[independent] for component in ("z", "ry", "rx")
-        )
+        lift, x, y = (rows @ rigid_motion(model, component)[independent] for component in ("z", "ry", "rx"))
         return cls(s, np.column_stack([-x / lift, y / lift, _heights(structure, model, path)]))
 
     def at(self, position: npt.ArrayLike) -> FloatArray:

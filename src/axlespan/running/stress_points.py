@@ -136,7 +136,8 @@ def _mean(
 ) -> tuple[tuple[str, ...], sp.csr_array]:
     """Mean of the rows of several elements; the first kind decides on the components."""
     table = dof_table(model)
-    total, count, components = sp.csr_array((0, table.size)), 0, ()
+    total, count = sp.csr_array((0, table.size)), 0
+    components: tuple[str, ...] = ()
     for facets, which, xi in found:
         own, rows = _element_rows(model, facets, which, xi)
         if components not in ((), own):
@@ -147,7 +148,7 @@ def _mean(
         entries = sp.coo_array((rows.ravel(), (row.ravel(), column.ravel())), shape=(len(own), table.size))
         total = sp.csr_array(entries) if components == () else total + sp.csr_array(entries)
         components, count = own, count + len(which)
-    return components, total / max(count, 1)
+    return components, sp.csr_array(total / max(count, 1))
 
 
 def _element_rows(

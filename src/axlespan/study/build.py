@@ -198,5 +198,6 @@ def _options(analysis: Any, output: Any) -> Mapping[str, Any]:
         "basis_tolerance": analysis.basis_tolerance,
         "fields": output.fields.every if isinstance(output.fields, EveryFew) else output.fields,
         "section_forces": output.section_forces,
+        "stresses": output.stresses,
         "envelopes": output.envelopes,
     }

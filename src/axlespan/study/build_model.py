@@ -136,7 +136,7 @@ def _with_masses(model: Model, case: Mesh, book: NodeBook) -> Model:
     every = ("x", "z") if model.plane else ("x", "y", "z")
     for number, mass in enumerate(case.masses):
         nodes = book.chosen(mass.at, f"masses.{number}.at")
-        there = active_components(model)[nodes].any(axis=0)
+        there = np.asarray(active_components(model)[nodes].any(axis=0))
         moves = tuple(name for name in every if not there.any() or there[COMPONENTS.index(name)])
         moments = mass.inertia.given() if mass.inertia else {}
         values = [mass.mass] * len(moves) + list(moments.values())

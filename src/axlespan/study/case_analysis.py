@@ -192,6 +192,8 @@ class Output(Part):
     """Whole fields of displacements and velocities, at a list of times or at every so many steps."""
     section_forces: Annotated[tuple[Text, ...], Field(examples=["[midspan]"])] = ()
     """Sensors at which moment, shear, normal force and torsion of the beams are recorded."""
+    stresses: Annotated[tuple[Text, ...], Field(examples=["[midspan]"])] = ()
+    """Sensors at which stresses of solids or resultants of shells under the line are recorded."""
     envelopes: Annotated[
         tuple[Annotated[str, OneOf(ENVELOPES)], ...], Field(examples=["[moment, shear]"])
     ] = ()
@@ -200,13 +202,14 @@ class Output(Part):
     @model_validator(mode="after")
     def _named(self) -> Self:
         faults = []
-        for number, name in enumerate(self.section_forces):
+        sensors = (("section_forces", self.section_forces), ("stresses", self.stresses))
+        for key, number, name in ((key, i, name) for key, names in sensors for i, name in enumerate(names)):
             if name not in self.sensors:
                 near = nearest(name, self.sensors)
                 known = f"Sensors are {listed(self.sensors)}" if self.sensors else "Add it to the sensors"
                 fix = f"Did you mean {near}?" if near else known
-                faults.append(InputError("no such sensor", field=f"section_forces.{number}", fix=fix))
-        for key, names in (("section_forces", self.section_forces), ("envelopes", self.envelopes)):
+                faults.append(InputError("no such sensor", field=f"{key}.{number}", fix=fix))
+        for key, names in (*sensors, ("envelopes", self.envelopes)):
             for number, name in enumerate(names):
                 if name in names[:number]:
                     faults.append(InputError("is named twice", field=f"{key}.{number}"))

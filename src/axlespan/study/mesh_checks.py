@@ -60,7 +60,7 @@ def require_held(built: MeshModel, holding: IntArray, what: str, place: str) -> 
 def same_places(built: MeshModel) -> IntArray:
     """Pairs (n_pair, 2) of nodes of elements at the same place that neither springs nor ties join."""
     pairs = built.mesh.duplicate_nodes(_SAME * built.book.size)
-    used = active_components(built.model).any(axis=1)
+    used = _with_elements(built)
     pairs = pairs[used[pairs].all(axis=1)]
     n = len(built.model.points)
     joined = [part.nodes for part in built.model.parts if np.shape(part.nodes)[1] == 2]
@@ -78,8 +78,7 @@ def warnings_of(built: MeshModel) -> tuple[str, ...]:
         found.append(f"the mesh is {size:.4g} m long; is unit: {built.case.unit} right?")
     idle = built.mesh.unused_nodes()
     idle = idle[~is_merged_away(built.mesh, idle, built.case.merge)]
-    named = active_components(built.model).any(axis=1)
-    idle = idle[~named[idle]]
+    idle = idle[~_with_elements(built)[idle]]
     if len(idle):
         found.append(f"{_counted(len(idle), 'node')} without elements: {built.book.shown(idle)}")
     pairs = same_places(built)
@@ -94,6 +93,10 @@ def warnings_of(built: MeshModel) -> tuple[str, ...]:
 
 def _counted(number: int, what: str) -> str:
     return f"{number} {what}{'s' * (number != 1)}"
+
+
+def _with_elements(built: MeshModel) -> npt.NDArray[np.bool_]:
+    return np.asarray(active_components(built.model).any(axis=1))
 
 
 def _groups(built: MeshModel) -> tuple[IntArray, npt.NDArray[np.bool_]]:
