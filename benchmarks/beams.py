@@ -25,9 +25,15 @@ def run(runs: int) -> list[Row]:
     case = crossing()
 
     def work(coupling: str) -> dict[str, float | str]:
-        result = asp.simulate(case, time_step=1e-3, steps=STEPS, method=asp.Alpha(0.0), coupling=coupling, iteration=EQUAL)
+        result = asp.simulate(
+            case, time_step=1e-3, steps=STEPS, method=asp.Alpha(0.0), coupling=coupling, iteration=EQUAL
+        )
         facts = {"us/step": 1e6 * float(result.facts["wall_time"]) / STEPS}
-        return facts | {name: float(result.facts[name]) for name in ("iterations", "factorizations") if name in result.facts}
+        return facts | {
+            name: float(result.facts[name])
+            for name in ("iterations", "factorizations")
+            if name in result.facts
+        }
 
     asp.simulate(case, time_step=1e-3, steps=10, method=asp.Alpha(0.0))  # imports and compiles
     couplings = {name: (lambda name=name: work(name)) for name in ("direct", "iterative", "refactored")}

@@ -43,7 +43,13 @@ def in_turns(
             seconds[name].append(time.perf_counter() - begun)
     first = seconds[next(iter(alternatives))]
     return [
-        Row(benchmark, name, times, statistics.median(t / r for t, r in zip(times, first, strict=True)), facts[name])
+        Row(
+            benchmark,
+            name,
+            times,
+            statistics.median(t / r for t, r in zip(times, first, strict=True)),
+            facts[name],
+        )
         for name, times in seconds.items()
     ]
 
@@ -51,7 +57,8 @@ def in_turns(
 def machine() -> dict[str, str | int]:
     """What the figures were measured on."""
     model = next(
-        (line.split(":")[1].strip() for line in _cpu_lines() if line.startswith("model name")), platform.processor()
+        (line.split(":")[1].strip() for line in _cpu_lines() if line.startswith("model name")),
+        platform.processor(),
     )
     return {
         "processor": model,
@@ -72,7 +79,9 @@ def report(rows: list[Row], path: Path) -> None:
     """Print a table, and write the same as JSON."""
     print(f"{'benchmark':34} {'what':30} {'median s':>10} {'ratio':>9}  facts")
     for row in rows:
-        facts = ", ".join(f"{k} {v:.4g}" if isinstance(v, float) else f"{k} {v}" for k, v in row.facts.items())
+        facts = ", ".join(
+            f"{k} {v:.4g}" if isinstance(v, float) else f"{k} {v}" for k, v in row.facts.items()
+        )
         print(f"{row.benchmark:34} {row.name:30} {row.median:10.3f} {row.ratio:9.3f}  {facts}")
     path.parent.mkdir(parents=True, exist_ok=True)
     document = {"machine": machine(), "rows": [{**asdict(row), "median": row.median} for row in rows]}

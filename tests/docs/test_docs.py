@@ -35,6 +35,7 @@ def command(line: str, folder: Path) -> subprocess.CompletedProcess[str]:
     assert words[0] == "axlespan"
     return subprocess.run(
         [str(AXLESPAN), *words[1:]],
+        check=False,
         cwd=folder,
         capture_output=True,
         text=True,
@@ -58,8 +59,8 @@ def test_python_blocks_run(page):
         result = space["result"]
         assert result.contact_force.shape == (14_001, 50)  # (time, contact)
         assert result.outcome.code == "completed"
-        # First mass of example 3.2; the snippet's line is uneven beyond the bridge too.
-        assert 1e3 * result.at("vehicle_displacement", "1.body.z").min() == pytest.approx(-12.84, abs=0.01)
+        # First mass of example 3.2, by the semi-analytical solution.
+        assert 1e3 * result.at("vehicle_displacement", "1.body.z").min() == pytest.approx(-12.84, abs=1e-3)
 
 
 def test_shell_commands_of_the_readme(tmp_path):

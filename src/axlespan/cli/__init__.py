@@ -1,5 +1,5 @@
 """The command line: ``axlespan run``, ``check``, ``examples``, ``schema``, ``verify``."""
 
-from axlespan.cli.app import main
+from axlespan.cli.entry import main
 
 __all__ = ["main"]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -79,7 +78,10 @@ def modes(
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace what an existing folder holds.")] = False,
 ) -> None:
-    """Natural frequencies of a case's structure, participation factors and effective masses."""
+    """Print the natural modes of a case's structure.
+
+    Frequencies, participation factors and effective masses.
+    """
     from axlespan.cli.modes import show_modes
 
     raise typer.Exit(show_modes(case, number, output, force=force))
@@ -93,7 +95,10 @@ def examples(
     output: Annotated[Path, typer.Option("-o", "--output", help="Folder to copy to.")] = Path(),
     force: Annotated[bool, typer.Option("--force", help="Replace existing files.")] = False,
 ) -> None:
-    """List the cases that come with axlespan, or copy some (``all`` for every one)."""
+    """List the cases that come with axlespan, or copy some.
+
+    The name all copies every one.
+    """
     from axlespan.cli.examples import list_or_copy
 
     raise typer.Exit(list_or_copy(copy or [], output, force=force))
@@ -114,17 +119,10 @@ def verify(
         str | None, typer.Option("--only", help="Run only cases whose name contains this.")
     ] = None,
 ) -> None:
-    """Run the verification book: case, quantity, expected, obtained, error."""
+    """Run the verification book.
+
+    Prints case, quantity, expected and obtained value, and the error.
+    """
     from axlespan.cli.verify import run_book
 
     raise typer.Exit(run_book(full=full, only=only))
-
-
-def main() -> None:
-    """Entry point of the ``axlespan`` command."""
-    try:
-        app()
-    except KeyboardInterrupt:
-        sys.exit(130)
-    except BrokenPipeError:
-        sys.exit(1)

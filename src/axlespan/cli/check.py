@@ -2,51 +2,48 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 
 import numpy as np
 
 from axlespan.cli.messages import DONE, refuse, say, warn
-from axlespan.errors import InputError
+from axlespan.cli.room import check_size
+from axlespan.errors import AxlespanError, InputError
+from axlespan.irregularity import spectrum_names
 from axlespan.linalg.eigen import lowest_modes
 from axlespan.linalg.factor import choose
 from axlespan.model.system import System
-from axlespan.study.build import BuiltCase, build
+from axlespan.study.build import WARNING, BuiltCase, build
 from axlespan.study.loader import load_case
+from axlespan.study.size import Size, size_text
 from axlespan.vehicles import Vehicle
 
 
 def check_case(case: Path) -> int:
     """Read, build and describe a case; the exit code."""
     try:
-        built = build(load_case(case))
+        built = build(load_case(case, spectra=spectrum_names()))
+        size = check_size(built)
     except InputError as error:
         return refuse(error)
-    for warning in built.warnings:
-        warn(warning)
-    for line in _description(built):
+    for text in built.cautions:
+        warn(f"warning: {text}")
+    for line in _description(built, size):
         say(line)
+    say(f"The case is in order. Run it with: axlespan run {shlex.quote(str(case))} -o FOLDER")
     return DONE
 
 
-def _description(built: BuiltCase) -> list[str]:
+def _description(built: BuiltCase, size: Size) -> list[str]:
     plan, structure, train = built.plan, built.crossing.structure, built.crossing.train
     settings, system = plan.settings, structure.system
-    wanted = 10 if built.facts else 3  # ten of an imported structure, to compare with where it came from
-    modes = lowest_modes(plan.structure.K, plan.structure.M, min(wanted, plan.structure.size))
-    head = plan.crossing.start + plan.crossing.motion.distance(plan.times[[0, -1]])
-    choice = choose(plan.structure.K)
-    kept = settings.steps // settings.every + 1
-    values = (
-        2 * plan.rows.n_contact
-        + 3 * plan.fleet.matrices.size
-        + 3 * len(settings.sensors)
-        + len(system.prescribed)
-    )
+    ends = plan.times_of(np.array([0, settings.steps]))
+    head = plan.crossing.start + plan.crossing.motion.distance(ends)
     lines = [
         built.title,
         f"  structure   {structure.name}, {structure.length:g} m, {plan.structure.size} free d.o.f., "
-        f"{_mass(system)}frequencies {', '.join(f'{f:.4g}' for f in modes.frequencies)} Hz",
+        f"{_mass(system)}{_frequencies(built)}",
         *(f"  {fact}" for fact in built.facts),
         f"  train       {train.name}, {_counted(len(train.placements), 'vehicle')}, {_counted(plan.rows.n_contact, 'wheel')}, "
         f"{train.wheelbase:g} m from first wheel to last",
@@ -54,11 +51,31 @@ def _description(built: BuiltCase) -> list[str]:
         f"  crossing    the first wheel runs from {head[0]:g} to {head[1]:g} m",
         f"  analysis    {settings.steps} steps of {settings.time_step:g} s, alpha = {settings.method.alpha:g}, "
         f"{settings.coupling} method",
-        f"  solver      {choice if settings.solver == 'auto' else settings.solver} ({choice.reason})",
-        f"  result      about {8e-6 * kept * values:.3g} MB",
+        f"  solver      {_solver(built)}",
+        f"  size        {size.kept_times} times of {size.values} values, at most {size_text(size.result)}; memory for the "
+        f"run about {size_text(size.memory)}",
     ]
-    lines += [f"  note        {note}" for note in settings.notes]
-    return [*lines, "The case is in order. Run it with: axlespan run CASE -o FOLDER"]
+    return [*lines, *(f"  note        {note}" for note in settings.notes if not note.startswith(WARNING))]
+
+
+def _frequencies(built: BuiltCase) -> str:
+    """The first frequencies of the structure, in words."""
+    matrices = built.plan.structure
+    wanted = 10 if built.facts else 3  # ten of an imported structure, to compare with where it came from
+    massive = int(np.count_nonzero(matrices.M.diagonal()))
+    try:
+        modes = lowest_modes(matrices.K, matrices.M, min(wanted, massive))
+    except AxlespanError as error:  # it runs without them
+        return f"frequencies not found: {error}"
+    return f"frequencies {', '.join(f'{f:.4g}' for f in modes.frequencies)} Hz"
+
+
+def _solver(built: BuiltCase) -> str:
+    kind = built.plan.settings.solver
+    if kind != "auto":
+        return kind
+    choice = choose(built.plan.structure.K)
+    return f"{choice} ({choice.reason})"
 
 
 def _mass(system: System) -> str:

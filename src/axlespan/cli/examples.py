@@ -45,15 +45,25 @@ def _copy(names: list[str], cases: dict[str, str], output: Path, force: bool) ->
             raise InputError(
                 "exists already", field="file", value=str(target), fix="Use --force to replace it"
             )
-        targets.append((target, cases[name]))
+        targets += [(target, cases[name]), *_companions(name, output)]
     try:
         output.mkdir(parents=True, exist_ok=True)
         for target, text in targets:
+            target.parent.mkdir(exist_ok=True)
             target.write_text(text, encoding="utf-8")
             say(str(target))
     except OSError as error:
         raise InputError(f"cannot be written: {error.strerror}", field="folder", value=str(output)) from None
     return DONE
+
+
+def _companions(name: str, output: Path) -> list[tuple[Path, str]]:
+    """Files that a case reads: those in the folder of its name beside it."""
+    folder = files("axlespan") / "examples" / name
+    if not folder.is_dir():
+        return []
+    found = sorted(folder.iterdir(), key=lambda entry: entry.name)
+    return [(output / name / entry.name, entry.read_text(encoding="utf-8")) for entry in found]
 
 
 def _title(text: str) -> str:

@@ -1,4 +1,4 @@
-"""What the commands say on the error stream, and their exit codes."""
+"""What the commands say, and their exit codes."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ import sys
 
 from axlespan.errors import InputError
 
-DONE, WRONG_INPUT, FAILED = 0, 2, 3
+DONE, WRONG_INPUT, FAILED, INTERRUPTED = 0, 2, 3, 130
 
 
 def refuse(error: InputError) -> int:
     """Print what is wrong with the input; the exit code for it."""
-    print(f"axlespan: {error}" if "\n" not in str(error) else f"axlespan:\n{error}", file=sys.stderr)  # noqa: T201
+    warn(str(error) if "\n" not in str(error) else f"\n{error}")
     return WRONG_INPUT
 
 
@@ -21,5 +21,6 @@ def say(text: str = "") -> None:
 
 
 def warn(text: str) -> None:
-    """Print a line on the error stream."""
-    print(f"axlespan: {text}", file=sys.stderr)  # noqa: T201
+    """Print a line on the error stream, if there is one."""
+    if sys.stderr is not None:  # a closed one is None
+        print(f"axlespan: {text}".replace(": \n", ":\n", 1), file=sys.stderr)  # noqa: T201

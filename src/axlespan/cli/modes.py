@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from axlespan.cli.folder import check_folder
 from axlespan.cli.messages import DONE, FAILED, refuse, say, warn
-from axlespan.cli.run import check_folder
 from axlespan.errors import AnalysisError, InputError
 from axlespan.io.paraview import write_modes
 from axlespan.io.strict_json import to_json

@@ -2,98 +2,60 @@
 
 from __future__ import annotations
 
-import json
-import os
-from dataclasses import replace
+import warnings
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from axlespan import __version__
-from axlespan.cli.messages import DONE, FAILED, refuse, say, warn
-from axlespan.cli.progress import progress
-from axlespan.errors import AnalysisError, InputError, Place
+from axlespan.cli.folder import check_folder, publish, staged
+from axlespan.cli.messages import DONE, FAILED, INTERRUPTED, refuse, say, warn
+from axlespan.cli.progress import Steps, progress
+from axlespan.cli.room import check_size
+from axlespan.errors import AnalysisError, AxlespanError, InputError
 from axlespan.interaction.result import Result
 from axlespan.interaction.simulate import run_plan
 from axlespan.io.paraview import require_model, write_paraview
 from axlespan.io.result_extras import append_extras
 from axlespan.io.results import write_result
-from axlespan.io.summary import summary, summary_lines
+from axlespan.io.summary import summary, summary_lines, write_summary
+from axlespan.irregularity import spectrum_names
 from axlespan.study.build import BuiltCase, build
 from axlespan.study.loader import load_case
 
 # Fields for ParaView where a case asks for none.
 _FIELDS = 100
 
+_NO_MEMORY = "there is not enough memory; keep fewer times with every, under output"
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What is written beside the result and its summary."""
+
+    figures: bool = True
+    paraview: bool = False
+
 
 def run_case(case: Path, output: Path | None, *, force: bool, figures: bool, paraview: bool = False) -> int:
     """Run a case; the exit code."""
-    folder = output or case.with_suffix("")
     try:
+        loaded = load_case(case, spectra=spectrum_names())
+        folder = output or _folder_of(case)
         check_folder(folder, force)
-        built = build(load_case(case))
+        built = build(loaded)
         if paraview:
             built = _with_fields(built)
+        with staged(folder) as stage:
+            check_size(built, folder)
+            for text in built.cautions:
+                warn(f"warning: {text}")
+            return _run(built, stage, folder, Wanted(figures, paraview))
     except InputError as error:
         return refuse(error)
-    for warning in (
-        *built.warnings,
-        *(note for note in built.plan.settings.notes if note.startswith("warning")),
-    ):
-        warn(warning)
-    steps = built.plan.settings.steps
-    code = DONE
-    try:
-        with progress(steps, built.title) as advance:
-            result = run_plan(built.plan, advance)
-    except AnalysisError as error:
-        warn(f"the analysis failed: {error}")
-        if not isinstance(error.result, Result):
-            return FAILED
-        result, code = error.result, FAILED
-    try:
-        _write(built, result, folder, figures=figures, paraview=paraview)
-    except OSError as error:
-        warn(f"{folder}: the results cannot be written: {error.strerror or error}")
-        return FAILED
-    return code
 
 
-def check_folder(folder: Path, force: bool) -> None:
-    """The folder must be new or empty, unless --force is given; and it must be possible to make it."""
-    place = Place(str(folder))
-    if folder.is_dir():
-        if any(folder.iterdir()) and not force:
-            raise InputError(
-                "exists already and is not empty", place=place, fix="Use --force, or another folder with -o"
-            )
-        if not os.access(folder, os.W_OK):
-            raise InputError("cannot be written to", place=place)
-        return
-    if folder.exists():
-        raise InputError("is a file, not a folder", place=place, fix="Name another folder with -o")
-    parent = next(p for p in (folder.absolute(), *folder.absolute().parents) if p.exists())
-    if not (parent.is_dir() and os.access(parent, os.W_OK)):
-        raise InputError(
-            "cannot be made", place=place, fix=f"Check that {parent} is a folder that you may write to"
-        )
-
-
-def _write(built: BuiltCase, result: Result, folder: Path, *, figures: bool, paraview: bool) -> None:
-    folder.mkdir(parents=True, exist_ok=True)
-    write_result(result, folder / "result.nc", case_text=built.loaded.source.text, version=__version__)
-    append_extras(result, folder / "result.nc")
-    written = ["result.nc", "summary.json"]
-    if figures:
-        written += _draw(built, result, folder)
-    if paraview:
-        written += write_paraview(result, built.crossing, folder)[:1]
-    facts = summary(result, built.crossing, title=built.title, version=__version__, files=written)
-    text = json.dumps(facts, indent=2, allow_nan=False)
-    temporary = folder / ".summary.json.part"
-    temporary.write_text(text + "\n", encoding="utf-8")
-    os.replace(temporary, folder / "summary.json")
-    for line in summary_lines(facts):
-        say(line)
-    say(f"Written to {folder}: {', '.join(written)}")
+def _folder_of(case: Path) -> Path:
+    """The folder for the results where none is named."""
+    return case.with_suffix("") if case.suffix else case.with_name(f"{case.name}-results")
 
 
 def _with_fields(built: BuiltCase) -> BuiltCase:
@@ -107,7 +69,68 @@ def _with_fields(built: BuiltCase) -> BuiltCase:
     return replace(built, plan=replace(built.plan, settings=replace(settings, fields=fields)))
 
 
-def _draw(built: BuiltCase, result: Result, folder: Path) -> list[str]:
-    from axlespan.plot import draw_figures
+def _run(built: BuiltCase, stage: Path, folder: Path, wanted: Wanted) -> int:
+    """Compute and write; the exit code."""
+    try:
+        result, code = _computed(built)
+        if result is None:
+            return code
+        lines = _written(built, result, stage, folder, wanted)
+    except (OSError, MemoryError) as error:
+        reason = getattr(error, "strerror", None) or str(error) or _NO_MEMORY
+        warn(f"{folder}: the results cannot be written: {reason}")
+        return FAILED
+    except KeyboardInterrupt:
+        warn("interrupted while the results were written; they are not kept")
+        return INTERRUPTED
+    for line in lines:
+        say(line)
+    return code
 
-    return draw_figures(result, built.crossing, folder)
+
+def _computed(built: BuiltCase) -> tuple[Result | None, int]:
+    """The result, that of a failed run too, and the exit code."""
+    steps = Steps(built.plan.settings.steps)
+    try:
+        with progress(steps, built.title):
+            return run_plan(built.plan, steps), DONE
+    except InputError:
+        raise
+    except (AxlespanError, MemoryError) as error:
+        warn(f"the analysis failed: {str(error) or _NO_MEMORY}")
+        kept = error.result if isinstance(error, AnalysisError) else None
+        return (kept if isinstance(kept, Result) else None), FAILED
+    except KeyboardInterrupt:
+        warn(f"interrupted after {steps.done} of {steps.total} steps; nothing was written")
+        return None, INTERRUPTED
+
+
+def _written(built: BuiltCase, result: Result, stage: Path, folder: Path, wanted: Wanted) -> list[str]:
+    """Write all files, then move them to their folder; what is to be said of the result."""
+    write_result(result, stage / "result.nc", case_text=built.loaded.source.text)
+    append_extras(result, stage / "result.nc")
+    files = ["result.nc", "summary.json"]
+    if wanted.figures:
+        files += _draw(built, result, stage)
+    if wanted.paraview and result.fields is not None:
+        files += write_paraview(result, built.crossing, stage)[:1]
+    facts = summary(result, built.crossing, title=built.title, files=files)
+    write_summary(facts, stage / "summary.json")
+    publish(stage, folder)
+    return [*summary_lines(facts), f"Written to {folder}"]
+
+
+def _draw(built: BuiltCase, result: Result, folder: Path) -> list[str]:
+    """Draw the figures; a result is worth keeping without them."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of glyphs that a font lacks, and the like
+            from axlespan.plot import draw_figures
+
+            return draw_figures(result, built.crossing, folder)
+    except Exception as error:  # whatever a plotting library says, hours of computing are not lost for it
+        reason = " ".join(str(error).split())[:200] or type(error).__name__
+        warn(f"warning: the figures could not be drawn: {reason}")
+        for file in folder.glob("*.png"):
+            file.unlink()
+        return []

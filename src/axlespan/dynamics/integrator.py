@@ -173,8 +173,8 @@ class Integrator:
         >>> one = sp.csr_array([[1.0]])
         >>> body = Integrator(Matrices(K=4.0 * one, M=one), Alpha(0.0), time_step=0.01)
         >>> later = body.step(State.at_rest((1,)), np.zeros(1), np.ones(1))
-        >>> float(later.a[0])  # 1 / (1 + 4 β Δt²)
-        0.9999000099990001
+        >>> round(float(later.a[0]), 12)  # 1 / (1 + 4 β Δt²)
+        0.999900009999
         """
         stepper = Stepper(self, state.copy())
         stepper.force[...] = self.weight_c * force_current + self.weight_p * force_previous

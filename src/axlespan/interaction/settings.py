@@ -100,6 +100,10 @@ def settings_for(
     notes: list[str] = []
     chosen = _method(crossing, method, notes)
     length = _footprint(crossing, footprint, notes)
+    if basis != "full" and (section_forces or set(envelopes or ()) & {"moment", "shear"}):
+        notes.append(
+            "warning: in a reduced basis section forces lack local bending, shear most; compare with basis: full"
+        )
     return Settings(
         float(time_step),
         int(steps),

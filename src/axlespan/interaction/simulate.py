@@ -25,7 +25,7 @@ from axlespan.interaction.reduction_error import ReductionError
 from axlespan.interaction.refactored import couple_by_refactoring
 from axlespan.interaction.result import Result
 from axlespan.interaction.settings import Iteration, Settings, settings_for
-from axlespan.interaction.start import start_of
+from axlespan.interaction.start import StartFactors, start_of
 from axlespan.running.structure import Structure
 
 FloatArray = npt.NDArray[np.float64]
@@ -272,12 +272,14 @@ def _driven(
 ) -> list[Result]:
     begun = time.perf_counter()
     errors = [None if basis is None else ReductionError(plan, basis) for plan in plans]
+    factors = StartFactors(plans[0])
     recorders = [
         Recorder(plan, progress, [] if error is None else [error])
         for plan, error in zip(plans, errors, strict=True)
     ]
     lanes = [
-        Lane.at_start(plan, start_of(plan), keeper) for plan, keeper in zip(plans, recorders, strict=True)
+        Lane.at_start(plan, start_of(plan, factors), keeper)
+        for plan, keeper in zip(plans, recorders, strict=True)
     ]
     couple, systems = _couple(plans[0].settings.coupling)
     drive(lanes, prepared, couple, systems=systems)

@@ -14,6 +14,7 @@ Accelerations and contact forces follow from the equations of motion and this co
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -54,19 +55,37 @@ class _Rows:
     second_rate: FloatArray  # [m/s^2]
 
 
-def start_of(plan: Plan) -> Start:
-    """The state at time zero."""
+class StartFactors:
+    """Factors of the structure's K and M, made when a start needs them, once for all crossings of a structure."""
+
+    def __init__(self, plan: Plan) -> None:
+        self._plan = plan
+
+    @cached_property
+    def stiffness(self) -> Factor:
+        """Factor of K."""
+        return factorize(self._plan.structure.K, kind=self._plan.settings.solver)
+
+    @cached_property
+    def mass(self) -> Factor:
+        """Factor of M, with a trace of stiffness where a d.o.f. has no mass."""
+        return _mass_factor(self._plan.structure, self._plan)
+
+
+def start_of(plan: Plan, factors: StartFactors | None = None) -> Start:
+    """The state at time zero; crossings of one structure may share the factors."""
+    factors = factors or StartFactors(plan)
     rows, fleet = _rows_at_zero(plan), plan.fleet
     n, n_contact = plan.structure.size, len(fleet.weight)
     external = plan.forces.at(0.0) if plan.forces.n_term else np.zeros(n)
-    u_s, forces = _static(plan, plan.forces.static(0.0), rows)
+    u_s, forces = _static(plan, plan.forces.static(0.0), rows, factors)
     u_v, forces = _vehicles_at(fleet, forces, rows, u_s)
     structure, vehicles = State.at_rest((n,)), State.at_rest((fleet.matrices.size,))
     structure.u[:], vehicles.u[:] = u_s, u_v
     x = fleet.coupled
     speed = float(plan.crossing.motion.speed(np.zeros(1))[0])
     vehicles.v[fleet.dofs] = (rows.rate + speed * (rows.E1 @ u_s))[x]
-    forces = _accelerate(plan, structure, vehicles, external, rows, forces.reshape(n_contact), speed)
+    forces = _accelerate(plan, structure, vehicles, external, rows, forces.reshape(n_contact), speed, factors)
     return Start(structure, vehicles, forces, np.asarray(rows.E.T @ forces))
 
 
@@ -112,14 +131,16 @@ def _prescribed_rows(block: RowBlock, n: int) -> FloatArray:
     return result
 
 
-def _static(plan: Plan, external: FloatArray, rows: _Rows) -> tuple[FloatArray, FloatArray]:
+def _static(
+    plan: Plan, external: FloatArray, rows: _Rows, factors: StartFactors
+) -> tuple[FloatArray, FloatArray]:
     """Deflection of the structure and contact forces with the train at rest on it."""
     fleet, n = plan.fleet, plan.structure.size
     forces = fleet.weight.copy()
     carried = np.flatnonzero(_carried(rows.E))
     if not len(carried) and not np.any(external):
         return np.zeros(n), forces + _elastic_share(fleet, rows.height)
-    factor = factorize(plan.structure.K, kind=plan.settings.solver)
+    factor = factors.stiffness
     u_0 = factor.solve(external.copy())
     columns = (
         factor.solve(np.ascontiguousarray(rows.E[carried].T.toarray())) if len(carried) else np.zeros((n, 0))
@@ -182,6 +203,7 @@ def _accelerate(
     rows: _Rows,
     static: FloatArray,
     speed: float,
+    factors: StartFactors,
 ) -> FloatArray:
     """Fill in the accelerations of both bodies; return the contact forces (n_contact,)."""
     fleet, x = plan.fleet, plan.fleet.coupled
@@ -192,7 +214,7 @@ def _accelerate(
     still = not np.any(carried) and np.abs(out_of_balance).max(initial=0.0) <= 1e-9 * max(
         np.abs(external).max(initial=0.0), 1e-30
     )
-    structure_mass = None if still else _mass_factor(plan.structure, plan)
+    structure_mass = None if still else factors.mass
     columns = np.zeros((plan.structure.size, len(x)))
     if structure_mass is not None:
         structure.a[:] = structure_mass.solve(_where_mass(plan.structure, out_of_balance))

@@ -17,19 +17,22 @@ from axlespan.running.structure import MAIN_LINE, Structure
 
 FloatArray = npt.NDArray[np.float64]
 
-# Distance of the base lines of two shapes, whose amplitude is 1; points along the line; edges that are drawn.
+# Distance of the base lines of two shapes, whose amplitude is 1; points along the line; edges drawn at most.
 _APART, _POINTS, _EDGES = 2.4, 1001, 40_000
+# Shapes in one figure.
+_MOST = 20
 # Largest displacement in a picture in space, as a share of the size of the model.
 _EXAGGERATION = 0.08
 
 
 def line_shapes(structure: Structure, modes: Modes, line: str = MAIN_LINE) -> Figure:
-    """Draw the vertical displacements of a running line in its modes, one above the other.
+    """Draw the vertical displacements of a running line in up to 20 modes, one above the other.
 
     The largest displacement anywhere in the structure is 1: modes that hardly move the line look flat.
     """
     path, system = structure.line(line), structure.system
     position = np.linspace(path.start, path.stop, _POINTS)
+    modes = Modes(modes.angular_frequencies[:_MOST], modes.shapes[:, :_MOST])
     shapes = np.zeros((system.size, len(modes)))
     shapes[system.free] = modes.shapes
     vertical = path.rows(position, system.size) @ shapes / _sizes(structure, modes)
@@ -72,9 +75,13 @@ def space_shape(structure: Structure, modes: Modes, i: int) -> Figure:
     bent = Line3DCollection(moved[edges], cmap="viridis", linewidths=0.9)
     bent.set_array(amount)
     ax.add_collection3d(bent)
+    for lines in ax.collections:
+        lines.set_clip_on(False)
     middle, half = 0.5 * (lowest + highest), 0.5 * (highest - lowest) + _EXAGGERATION * reach
     ax.set(**{f"{axis}lim": (m - h, m + h) for axis, m, h in zip("xyz", middle, half, strict=True)})
-    ax.set_box_aspect(half)
+    ax.set_box_aspect(half, zoom=1.1)
+    for axis, extent in zip("xyz", half / half.max(), strict=True):
+        ax.locator_params(axis=axis, nbins=max(2, round(6 * extent)))
     ax.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
     ax.set_title(f"Mode {i + 1}: {modes.frequencies[i]:.4g} Hz", fontsize=10.0)
     return figure

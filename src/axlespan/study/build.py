@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,12 +17,17 @@ from axlespan.interaction.settings import Iteration, settings_for
 from axlespan.irregularity import Profile
 from axlespan.running.structure import Structure
 from axlespan.study import case_crossing, case_train
+from axlespan.study.build_checks import overlaps, require_solver, require_stable
 from axlespan.study.build_structures import structure_of
 from axlespan.study.build_vehicles import vehicle_of
+from axlespan.study.built import BuiltStructure
 from axlespan.study.case_analysis import EveryFew
-from axlespan.study.faults import InputErrors
 from axlespan.study.loader import LoadedCase
+from axlespan.study.pointing import pointing
 from axlespan.vehicles import Placement, Train
+
+#: How notes begin that are warnings.
+WARNING = "warning: "
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +45,12 @@ class BuiltCase:
         """The case's title, or the name of its file."""
         return self.loaded.case.title or self.loaded.source.file
 
+    @property
+    def cautions(self) -> tuple[str, ...]:
+        """What looks wrong but may be right, one line each."""
+        said = (note.removeprefix(WARNING) for note in self.plan.settings.notes if note.startswith(WARNING))
+        return (*self.warnings, *said)
+
 
 def build(loaded: LoadedCase) -> BuiltCase:
     """Build the structure, the train and the plan of a case.
@@ -51,54 +61,21 @@ def build(loaded: LoadedCase) -> BuiltCase:
         If something is wrong that only shows now; it points to the place in the file.
     """
     case = loaded.case
-    with _pointing(loaded, "structure"):
+    with pointing(loaded, "structure"):
         made = structure_of(case.structure)
-    with _pointing(loaded, "train"):
+        require_stable(made.structure, case.structure)
+    with pointing(loaded, "train"):
         train = _train(loaded)
-    with _pointing(loaded, "crossing"):
+    with pointing(loaded, "crossing"):
         crossing = _crossing(loaded, made.structure, train)
-    with _pointing(loaded, "analysis"):
+    with pointing(loaded, "analysis"):
+        require_solver(case.analysis.solver)
         method = _method(loaded)
-        settings = settings_for(crossing, method=method, **_options(case.analysis, case.output))
+        settings = settings_for(crossing, method=method, **_options(case.analysis, case.output, made))
         plan = plan_for(crossing, settings)
     warnings = (*loaded.warnings, *(f"{loaded.source.file}: structure: {word}" for word in made.warnings))
+    warnings = (*warnings, *overlaps(train, loaded.source))
     return BuiltCase(loaded, crossing, plan, warnings, made.facts)
-
-
-@contextmanager
-def _pointing(loaded: LoadedCase, section: str) -> Iterator[None]:
-    """Turn errors of the layers below into errors at the place of the value, as far as it can be told."""
-    try:
-        yield
-    except InputErrors as errors:
-        raise InputErrors(_pointed(loaded, section, error) for error in errors.errors) from errors
-    except InputError as error:
-        if error.place is not None:
-            raise
-        raise _pointed(loaded, section, error) from error
-
-
-def _pointed(loaded: LoadedCase, section: str, error: InputError) -> InputError:
-    if error.place is not None:
-        return error
-    source, paths = loaded.source, _candidates(section, error.field)
-    if error.rule.startswith("is missing"):  # then what it is missing in stands there
-        paths += [path for path in paths if source.knows(path.rpartition(".")[0])]
-        return source.blame(paths[-1], error.rule, error.fix)
-    for path in paths:
-        if source.knows(path):
-            return source.blame(path, error.rule, error.fix)
-    words = InputError(error.rule, field=error.field, **({"value": error.value} if error.has_value else {}))
-    return source.blame(section, str(words), error.fix)
-
-
-def _candidates(section: str, field: str | None) -> list[str]:
-    if not field:
-        return [section]
-    places = [f"{section}.{field}", field]
-    if section == "analysis":
-        places += [f"output.{field}", f"crossing.{field}"]
-    return places
 
 
 # --- train -----------------------------------------------------------------------------------------
@@ -108,8 +85,9 @@ def _train(loaded: LoadedCase) -> Train:
     entries = loaded.case.train
     built = []
     for number, entry in enumerate(entries):
-        with _pointing(loaded, f"train.{number}"):
+        with pointing(loaded, f"train.{number}"):
             built.append(vehicle_of(entry, loaded.case.analysis.gravity))
+            built[-1].static_forces(loaded.case.analysis.gravity)  # it stands, and no wheel pulls
     wheelbases = [max(point.behind for point in vehicle.contacts) for vehicle in built]
     heads = case_train.first_wheels(entries, wheelbases, [None] * len(built))
     placed = [
@@ -125,7 +103,7 @@ def _train(loaded: LoadedCase) -> Train:
 
 def _crossing(loaded: LoadedCase, structure: Structure, train: Train) -> Crossing:
     case = loaded.case.crossing
-    with _pointing(loaded, "crossing.irregularity"):
+    with pointing(loaded, "crossing.irregularity"):
         profile = _profile(case.irregularity)
     return Crossing(
         structure,
@@ -152,11 +130,18 @@ def _profile(case: Any) -> Profile:
             assert case.file is not None  # the schema asks for one of the two
             table = profiles.Table.from_csv(case.file)
         return _bounded(table, case)
-    name = case.name
-    shape = profiles.spectrum(name)
+    shape = profiles.spectrum(case.name)
     low, high = case.wavelengths or shape.wavelengths
-    length = 20.0 * high if case.components is None else case.components * high
-    realized = profiles.realize(shape, length, seed=case.seed, wavelengths=(low, high))
+    length = 20.0 * high if case.components is None else case.components / (1.0 / low - 1.0 / high)
+    try:
+        realized = profiles.realize(shape, length, seed=case.seed, wavelengths=(low, high))
+    except InputError as error:
+        if error.field != "length":
+            raise
+        field = "wavelengths" if case.components is None else "components"
+        raise InputError(
+            error.rule, field=field, fix="Use a narrower band of wavelengths, or fewer components"
+        ) from error
     scaled = realized if case.scale == 1.0 else profiles.Scaled(realized, case.scale)
     return _bounded(scaled, case)
 
@@ -174,7 +159,7 @@ def _method(loaded: LoadedCase) -> Alpha | None:
     return Alpha(analysis.alpha or 0.0, analysis.beta, analysis.gamma)
 
 
-def _options(analysis: Any, output: Any) -> Mapping[str, Any]:
+def _options(analysis: Any, output: Any, made: BuiltStructure) -> Mapping[str, Any]:
     iteration = {
         name: value
         for name, value in (
@@ -191,7 +176,9 @@ def _options(analysis: Any, output: Any) -> Mapping[str, Any]:
         "coupling": analysis.method,
         "solver": analysis.solver,
         "every": output.every,
-        "sensors": output.sensors,
+        "sensors": {
+            name: made.sensor_position(at, f"output.sensors.{name}") for name, at in output.sensors.items()
+        },
         "iteration": Iteration(**iteration),
         "basis": analysis.basis,
         "basis_modes": analysis.modes or 0,

@@ -51,13 +51,12 @@ def structure_of_matrices(case: MatricesStructure) -> BuiltStructure:
             f"shapes at {len(book.dofs)} d.o.f.",
             "mass        not known from modes",
         ]
-        return _built(case.modes, system, lines, [*facts, *words])
+        return _built("modes", system, lines, book, [*facts, *words])
     model, book = matrices_of(case, case.damping if isinstance(case.damping, Path) else None)
     law = None if isinstance(case.damping, Path) else damping_of(case.damping)
     system = system_of(model, book, case.supports, law)
     lines, words = _lines(case, book)
-    assert case.stiffness is not None  # the schema asks for it
-    built = _built(case.stiffness, system, lines, [])
+    built = _built("matrices", system, lines, book, [])
     facts = [f"matrices    {model.n_dof} d.o.f., {len(system.prescribed)} at supports of the case"]
     if book.is_named:
         facts += mass_facts(built.structure)
@@ -67,12 +66,23 @@ def structure_of_matrices(case: MatricesStructure) -> BuiltStructure:
     return replace(built, facts=(*facts, *words))
 
 
+def _dof_at(book: RowBook, choice: str, place: str) -> str:
+    """Vertical d.o.f. of a node, or a d.o.f. by its name."""
+    if choice in book.names:
+        return choice
+    node = book.nodes.one(choice, place)
+    row = int(book.rows(np.array([node]), "z")[0])
+    if row < 0:
+        raise InputError("has no vertical d.o.f. in the matrices", field=place)
+    return book.names[row]
+
+
 def _built(
-    file: Path, system: System, lines: dict[str, PolynomialPath], facts: Sequence[str]
+    name: str, system: System, lines: dict[str, PolynomialPath], book: RowBook, facts: Sequence[str]
 ) -> BuiltStructure:
     main = next(iter(lines.values()))
-    structure = Structure(system, lines, file.stem, None, {"length": main.stop - main.start})
-    return BuiltStructure(structure, tuple(facts))
+    structure = Structure(system, lines, name, None, {"length": main.stop - main.start})
+    return BuiltStructure(structure, tuple(facts), dof_at=lambda at, place: _dof_at(book, at, place))
 
 
 def _lines(case: MatricesStructure, book: RowBook) -> tuple[dict[str, PolynomialPath], list[str]]:
@@ -84,7 +94,7 @@ def _lines(case: MatricesStructure, book: RowBook) -> tuple[dict[str, Polynomial
         assert line is not None  # the schema asks for one of the two
         path, words = path_over(line, book, place)
         paths[name] = path
-        facts.append(f"{line_fact(name, path)}; {words}")
+        facts.append(line_fact(name, path, words))
     return paths, facts
 
 

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
 
 import numpy as np
 
+from axlespan.errors import InputError
+from axlespan.running.path import PolynomialPath
 from axlespan.running.structure import Structure
 from axlespan.study.build_lines import lines_of
 from axlespan.study.build_model import MeshModel, model_of
@@ -31,8 +34,25 @@ def structure_of_mesh(case: MeshStructure) -> BuiltStructure:
     main = next(iter(lines.values()))
     name = case.file.stem if case.file is not None else "mesh"
     structure = Structure(built.compiled.system, lines, name, built.model, {"length": main.stop - main.start})
-    facts = (*_mesh_facts(built), *mass_facts(structure), *(line_fact(*item) for item in lines.items()))
-    return BuiltStructure(structure, facts, warnings_of(built))
+    facts = (*_mesh_facts(built), *mass_facts(structure), *_line_facts(lines))
+    return BuiltStructure(structure, facts, warnings_of(built), lambda at, place: _dof_at(built, at, place))
+
+
+def _dof_at(built: MeshModel, choice: str, place: str) -> str:
+    """Vertical d.o.f. of a node."""
+    name = f"{built.model.node_label(built.book.one(choice, place))}.z"
+    if name not in built.compiled.system.dof_names:
+        raise InputError("has no vertical d.o.f.", field=place)
+    return name
+
+
+def _line_facts(lines: Mapping[str, PolynomialPath]) -> list[str]:
+    facts = []
+    for name, path in lines.items():
+        pieces, power = len(path.breaks) - 1, path.coefficients.shape[2] - 1
+        degree = {1: "linear", 2: "quadratic", 3: "cubic"}.get(power, f"of degree {power}")
+        facts.append(line_fact(name, path, f"{pieces} pieces, {degree}"))
+    return facts
 
 
 def _mesh_facts(built: MeshModel) -> list[str]:

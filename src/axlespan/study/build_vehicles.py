@@ -7,6 +7,7 @@ from axlespan.errors import InputError
 from axlespan.study import case_train
 from axlespan.study.case_multibody import Multibody
 from axlespan.study.case_vehicle_imported import MatricesVehicle, MeshVehicle
+from axlespan.study.faults import listed
 from axlespan.study.imported_vehicles import vehicle_of_matrices, vehicle_of_mesh
 from axlespan.vehicles import Vehicle
 
@@ -40,4 +41,9 @@ def vehicle_of(case: case_train.Entry, gravity: float) -> Vehicle:
         return vehicle_of_mesh(case, gravity)
     if isinstance(case, MatricesVehicle):
         return vehicle_of_matrices(case, gravity)
-    raise InputError("is not available in this version", field="vehicle", value=case.vehicle)
+    raise InputError(
+        "is not available in this version",
+        field="vehicle",
+        value=case.vehicle,
+        fix=f"Kinds are {listed(case_train.KINDS.names)}",
+    )

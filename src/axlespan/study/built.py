@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
+import numpy as np
+
+from axlespan.errors import InputError
 from axlespan.running.path import PolynomialPath
 from axlespan.running.structure import Structure
 
@@ -15,6 +19,37 @@ class BuiltStructure:
     structure: Structure
     facts: tuple[str, ...] = ()  # lines for people: counts, masses, how the running line goes
     warnings: tuple[str, ...] = ()
+    dof_at: Callable[[str, str], str] | None = None  # vertical d.o.f. of a node that a case names at a place
+
+    def sensor_position(self, at: float | str, place: str) -> float:
+        """Position of a sensor along the first running line [m].
+
+        Parameters
+        ----------
+        at : float or str
+            A position [m], or the name of a node of the line.
+        place : str
+            Its path in the case, for errors.
+
+        Raises
+        ------
+        InputError
+            If there is no such node, or it is not one where the line's displacement is that of the node.
+        """
+        if not isinstance(at, str):
+            return at
+        if self.dof_at is None:
+            fix = "Write a length, such as 12.5 m"
+            raise InputError("must be a position; the structure has no named nodes", field=place, fix=fix)
+        system, path = self.structure.system, self.structure.line()
+        own = system.elimination[[system.dof(self.dof_at(at, place))]].toarray()[0]
+        rows = path.rows(path.breaks, system.size)
+        miss = np.asarray(rows.multiply(rows).sum(axis=1)).ravel() - 2.0 * (rows @ own) + own @ own
+        found = np.flatnonzero(np.abs(miss) < 1e-9)
+        if not len(found):
+            rule = "is not a node of the first running line, where sensors stand"
+            raise InputError(rule, field=place, fix="Write a position along it, such as 12.5 m")
+        return float(path.breaks[found[0]])
 
 
 def mass_facts(structure: Structure) -> list[str]:
@@ -25,8 +60,6 @@ def mass_facts(structure: Structure) -> list[str]:
     return [f"mass        {masses}"]
 
 
-def line_fact(name: str, path: PolynomialPath) -> str:
-    """Where a running line goes."""
-    pieces, power = len(path.breaks) - 1, path.coefficients.shape[2] - 1
-    degree = {1: "linear", 2: "quadratic", 3: "cubic"}.get(power, f"of degree {power}")
-    return f"line        {name}: {path.start:g} to {path.stop:g} m, {pieces} pieces, {degree}"
+def line_fact(name: str, path: PolynomialPath, words: str) -> str:
+    """Where a running line goes, and how the displacement under a wheel follows from the d.o.f."""
+    return f"line        {name}: {path.start:g} to {path.stop:g} m, {words}"

@@ -13,7 +13,7 @@ from axlespan.study.case_structure import ContinuousBeam, SimpleSpan, Structure
 from axlespan.study.case_train import Entry, check_order
 from axlespan.study.checks import Part
 from axlespan.study.faults import InputErrors
-from axlespan.study.quantities import Text
+from axlespan.study.quantities import Line
 from axlespan.units import LENGTH, TIME, show
 
 
@@ -24,7 +24,7 @@ class Case(Part):
     mapping with the keys of the file.
     """
 
-    title: Text = ""
+    title: Line = ""
     """What this case is."""
     structure: Annotated[Structure, Field(examples=["{kind: simple-span, length: 25 m, ...}"])]
     """What is crossed."""
@@ -39,7 +39,7 @@ class Case(Part):
 
     @model_validator(mode="after")
     def _fits_together(self) -> Self:
-        faults = [*_empty_train(self), *_sensors_off(self), *_fields_late(self)]
+        faults = [*_empty_train(self), *_sensors_off(self), *_records_late(self), *_fields_late(self)]
         try:
             check_order(self.train)
         except InputErrors as errors:
@@ -71,6 +71,15 @@ def _sensors_off(case: Case) -> list[InputError]:
             rule = f"must lie on the beam, from 0 to {show(beam.length, LENGTH, 6)}"
             faults.append(InputError(rule, field=f"output.sensors.{name}"))
     return faults
+
+
+def _records_late(case: Case) -> list[InputError]:
+    """Find steps between records of which the run has not as many."""
+    steps = case.analysis.step_count
+    if case.output.every <= steps:
+        return []
+    rule = f"must be at most {steps}, the number of steps: nothing but the start would be recorded"
+    return [InputError(rule, field="output.every", fix=f"Write {max(1, steps // 1000)}")]
 
 
 def _fields_late(case: Case) -> list[InputError]:

@@ -14,7 +14,7 @@ from axlespan.study.checks import Location, Measured, OneOf, Part
 from axlespan.study.faults import InputErrors, listed, nearest
 from axlespan.study.kinds import LIST, MAPPING, Kinds, list_or_mapping, tag
 from axlespan.study.quantities import Count, Duration, Factor, Flag, Footprint, Gravity, Stiffness, Text
-from axlespan.units import HERTZ_STIFFNESS, NUMBER, TIME
+from axlespan.units import HERTZ_STIFFNESS, NUMBER, RATIO, TIME
 
 METHODS: Final = ("direct", "iterative", "refactored")
 BASES: Final = ("full", "reduced")

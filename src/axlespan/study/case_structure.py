@@ -26,6 +26,7 @@ from axlespan.study.quantities import (
 from axlespan.units import LENGTH, show
 
 _REQUIRED_OF_SPANS = ("youngs_modulus", "second_moment", "mass_per_length", "elements")
+_APART = 1e-5  # share of the length; supports that are closer are at one place
 _EXAMPLES = {
     "youngs_modulus": "34 GPa",
     "second_moment": "2.90 m^4",
@@ -153,7 +154,8 @@ def _check_shear(beam: SimpleSpan | Span, prefix: str = "") -> None:
 
 def _check_supports(supports: tuple[Support, ...] | None, length: float) -> None:
     """Require positions on the beam, all different."""
-    faults, seen = [], dict[float, int]()
+    faults: list[InputError] = []
+    seen: list[tuple[float, int]] = []
     for number, support in enumerate(supports or ()):
         at, field = support.at, f"supports.{number}.at"
         if isinstance(at, str):
@@ -163,15 +165,13 @@ def _check_supports(supports: tuple[Support, ...] | None, length: float) -> None
             faults.append(
                 InputError(f"must lie on the beam, from 0 to {show(length, LENGTH, 6)}", field=field)
             )
-        elif at in seen:
-            rule = f"has a support already, supports.{seen[at]}"
+        elif near := [other for place, other in seen if abs(at - place) <= _APART * length]:
+            rule = f"has a support already, supports.{near[0]}"
             faults.append(InputError(rule, field=field, fix="Put all directions into one of them"))
         else:
-            seen[at] = number
+            seen.append((at, number))
     if supports is not None and not supports:
-        faults.append(
-            InputError("holds nothing", field="supports", fix="Add [{at: 0 m, fixed: [x, z]}, ...]")
-        )
+        faults.append(InputError("holds nothing", field="supports", fix="Add [{at: 0 m, fixed: [z]}, ...]"))
     if faults:
         raise InputErrors(faults)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Final
@@ -17,6 +18,7 @@ from axlespan.study.faults import listed, nearest
 from axlespan.units import Dimension
 
 _INFINITY: Final = float("inf")
+_NOT_IN_A_LINE: Final = ("Cc", "Cs", "Zl", "Zp")  # control characters, halves of pairs, line separators
 
 
 class Part(BaseModel):
@@ -195,15 +197,22 @@ class OneOf(Checked):
 
 @dataclass(frozen=True)
 class Word(Checked):
-    """A text that is not empty; with ``strict`` a name of letters, digits, - and _, as in names of d.o.f."""
+    """A text that is not empty, in one line; line breaks are refused, or folded into spaces.
+
+    With ``strict`` it is a name of letters, digits, - and _, as in names of d.o.f.
+    """
 
     strict: bool = False
+    folded: bool = False
 
     def read(self, raw: Any) -> str:
         """Return the text; a number is taken as its digits."""
         if isinstance(raw, bool) or not isinstance(raw, (str, int, float)) or not str(raw).strip():
             raise InputError("must be a text", value=raw, fix="Put it in quotes")
-        text = str(raw).strip()
+        text = " ".join(str(raw).split()) if self.folded else str(raw).strip()
+        odd = next((sign for sign in text if unicodedata.category(sign) in _NOT_IN_A_LINE), None)
+        if odd is not None:  # of no use in tables and figures, and some files cannot hold them
+            raise InputError(f"must be a text in one line; it has the character U+{ord(odd):04X}", value=raw)
         if self.strict and not re.fullmatch(r"[A-Za-z0-9_-]+", text):
             clean = re.sub(r"[^A-Za-z0-9_-]+", "_", text).strip("_") or "body"
             raise InputError("must be a name of letters, digits, - and _", value=raw, fix=f"Write {clean}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -38,7 +39,7 @@ def under(place: str) -> Iterator[None]:
 
 @dataclass(frozen=True, eq=False)
 class NodeBook:
-    """Nodes by position, number, set and name."""
+    """Nodes by set, name and number (12 or n12)."""
 
     points: FloatArray  # (n_node, 3) [m]
     labels: IntArray  # (n_node,) their numbers; -1 for points that have names only
@@ -82,8 +83,9 @@ class NodeBook:
             if not len(self.sets[choice]):
                 raise InputError("is a set without nodes", field=place)
             return self.sets[choice]
-        if choice.lstrip("-").isdigit():
-            return np.array([self._numbered(int(choice), place)])
+        number = re.fullmatch(r"n?(-?\d+)", choice)
+        if number:
+            return np.array([self._numbered(int(number[1]), place)])
         raise self._unknown(choice, place)
 
     def one(self, choice: str, place: str) -> int:

@@ -103,4 +103,6 @@ def _steps(path: Path) -> list[str]:
 
 
 def _dotted(steps: Sequence[str]) -> str | None:
-    return ".".join(steps) or None
+    """A path in words; what cannot be printed is escaped."""
+    text = ".".join(steps)
+    return "".join(sign if sign.isprintable() else repr(sign)[1:-1] for sign in text) or None
