@@ -440,7 +440,7 @@ LINE = "running_line: {nodes: deck}"
          "structure.dofs.1 = b.q: must be node.component, as in 12.z or body.pitch. Components are x, y, z, rx, ry, rz, roll, "
          "pitch and yaw"),
         ("dofs: dofs.csv", "dofs: [1.x, 1.z]",
-         "K: stiffness = 27: must have 2 rows, as many as there are d.o.f.. Export all matrices and the d.o.f. map together."),
+         "K: stiffness = 27: must have as many rows as there are d.o.f., 2. Export all matrices and the d.o.f. map together."),
         ("at: 9, fixed: [z]", "at: 9, fixed: [x]",
          "structure: has a part that no support holds: it can move freely at 8.z, 7.z, 9.z, 6.z. "
          "Support these degrees of freedom, or connect the part that they belong to"),
@@ -492,7 +492,7 @@ def test_wrong_vehicles(tmp_path):
         "case.yaml:3:88: train.0.wheels.0.dof = body.ry: must be vertical: body.ry is not. Name a d.o.f. in z"
     )
     assert said("dofs: [body.z, wheel.z], wheels: [{dof: wheel.z}]") == (
-        "case.yaml:3:85: train.0.wheels.0.position: is missing. Add it, or coordinates of the nodes"
+        "case.yaml:3:82: train.0.wheels.0.position: is missing. Add it, or coordinates of the nodes"
     )
 
 

@@ -7,7 +7,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
-_TITLE = 32  # characters of a case's title beside the bar
+# Characters: of the bar, of a title below which it says nothing, and of all numbers but those of the steps.
+_BAR, _FEWEST, _NUMBERS = 24, 8, 38
 
 
 @dataclass
@@ -31,19 +32,20 @@ def progress(steps: Steps, title: str) -> Iterator[None]:
         yield
         return
     from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
+    console = Console(stderr=True)
+    room = console.width - _NUMBERS - 2 * len(str(steps.total))  # for the title and the bar
+    short = title if len(title) <= room - _BAR - 1 else title[: max(room - _BAR - 2, 0)] + "…"
     columns = (
-        TextColumn("{task.description}", markup=False),  # a title may have brackets
-        BarColumn(bar_width=24),
-        MofNCompleteColumn(),
-        TextColumn("steps"),
-        TextColumn("{task.fields[rate]}"),
+        *([TextColumn("{task.description}", markup=False)] if len(short) > _FEWEST else []),
+        *([BarColumn(bar_width=_BAR)] if room >= _BAR else []),
+        TextColumn("{task.completed:.0f}/{task.total:.0f} steps", markup=False),
+        TextColumn("{task.fields[rate]}", markup=False),
         TimeRemainingColumn(),
         TextColumn("left"),
     )
-    short = title if len(title) <= _TITLE else title[: _TITLE - 1] + "…"
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+    with Progress(*columns, console=console, transient=True) as bar:
         task = bar.add_task(short, total=steps.total, rate="")
 
         def show(done: int) -> None:

@@ -127,9 +127,11 @@ def _draw(built: BuiltCase, result: Result, folder: Path) -> list[str]:
             warnings.simplefilter("ignore")  # of glyphs that a font lacks, and the like
             from axlespan.plot import draw_figures
 
-            return draw_figures(result, built.crossing, folder)
+            compare = built.loaded.case.output.compare
+            return draw_figures(result, built.crossing, folder, compare=compare)
     except Exception as error:  # whatever a plotting library says, hours of computing are not lost for it
-        reason = " ".join(str(error).split())[:200] or type(error).__name__
+        words = getattr(error, "strerror", None) or str(error) or type(error).__name__
+        reason = " ".join(words.split())[:200]
         warn(f"warning: the figures could not be drawn: {reason}")
         for file in folder.glob("*.png"):
             file.unlink()

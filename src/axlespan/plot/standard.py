@@ -15,6 +15,7 @@ from axlespan.interaction.result import Result
 from axlespan.io.dof_units import is_rotation
 from axlespan.plot.contact import contact_force
 from axlespan.plot.histories import acceleration, displacement
+from axlespan.plot.neves2012 import neves2012
 from axlespan.plot.reactions import reactions
 from axlespan.plot.style import DPI, new_figure
 
@@ -89,14 +90,31 @@ def save(figures: Mapping[str, Figure], folder: str | PathLike[str]) -> list[Pat
     return written
 
 
-def draw_figures(result: Result, crossing: Crossing, folder: str | PathLike[str]) -> list[str]:
+def draw_figures(
+    result: Result, crossing: Crossing, folder: str | PathLike[str], *, compare: str | None = None
+) -> list[str]:
     """Write the standard figures of a run into a folder; their file names.
+
+    Parameters
+    ----------
+    result, crossing
+        What was computed, and of what.
+    folder : path
+        Where the files go.
+    compare : {"neves2012-3.1", "neves2012-3.2"}, optional
+        Also draw the figures of that published example, beside its semi-analytical solution.
 
     Raises
     ------
     OSError
         If the folder cannot be written to.
+    InputError
+        If the result lacks what the published figures show.
     """
     path = next(iter(crossing.structure.lines.values()))
-    files = save(standard_figures(result, span=(path.start, path.stop)), folder)
-    return [file.name for file in files]
+    figures = standard_figures(result, span=(path.start, path.stop))
+    if compare == "neves2012-3.1":
+        figures |= neves2012(single=result)
+    elif compare == "neves2012-3.2":
+        figures |= neves2012(train=result)
+    return [file.name for file in save(figures, folder)]

@@ -19,6 +19,7 @@ from axlespan.units import HERTZ_STIFFNESS, NUMBER, RATIO, TIME
 METHODS: Final = ("direct", "iterative", "refactored")
 BASES: Final = ("full", "reduced")
 CONTACTS: Final = ("rigid", "unilateral", "hertz", "linear-spring")
+COMPARISONS: Final = ("neves2012-3.1", "neves2012-3.2")
 AVAILABLE_BASES: Final = ("full", "reduced")
 AVAILABLE_CONTACTS: Final = ("rigid",)
 SOLVERS: Final = ("auto", "banded", "superlu", "pardiso", "cholmod")
@@ -173,6 +174,8 @@ class Output(Part):
         dict[Text, Annotated[float | str, Location()]], Field(examples=["{midspan: 12.5 m}"])
     ] = {}  # noqa: RUF012
     """Places on the structure by their names: a position along it, or the name of a node of a mesh."""
+    compare: Annotated[str, OneOf(COMPARISONS)] | None = None
+    """A published example whose figures are drawn beside its semi-analytical solution."""
     every: Count = 1
     """Steps from one record to the next."""
     reactions: Flag = True

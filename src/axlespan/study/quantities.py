@@ -73,7 +73,7 @@ Factor = Annotated[float, Measured(NUMBER, above=0.0)]
 
 Count = Annotated[int, Whole()]
 Few = Annotated[int, Whole(at_most=100_000)]
-Elements = Annotated[int, Whole(at_most=1_000_000)]
+Elements = Annotated[int, Whole(at_most=100_000)]  # of a span: beyond, rounding eats its stiffness
 Seed = Annotated[int, Whole(at_least=0, at_most=2**63 - 1)]
 Text = Annotated[str, Word()]
 Line = Annotated[str, Word(folded=True)]

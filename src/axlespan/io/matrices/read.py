@@ -127,7 +127,7 @@ def _model(
     keep = np.setdiff1d(np.arange(len(names)), held)
     for name, matrix in matrices.items():
         if matrix.shape[0] != len(names):
-            rule = f"must have {len(names)} rows, as many as there are d.o.f."
+            rule = f"must have as many rows as there are d.o.f., {len(names)}"
             fix = "Export all matrices and the d.o.f. map together."
             raise InputError(rule, field=name, value=matrix.shape[0], fix=fix)
     free = {name: csr_array(matrix[keep][:, keep]) for name, matrix in matrices.items()}
