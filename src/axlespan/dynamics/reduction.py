@@ -133,7 +133,7 @@ def _compressed(block: FloatArray, K: sp.csr_array, basis: FloatArray | None, cu
         if basis is not None and scaled.shape[1]:
             scaled = scaled - basis @ (basis.T @ np.asarray(K @ scaled))
     if not scaled.shape[1]:
-        return scaled
+        return np.asarray(scaled)
     shares, turn = np.linalg.eigh(scaled.T @ np.asarray(K @ scaled))
     # Rounding leaves shares of about 1e-15 of the block's energy.
     keep = shares > max(cutoff**2, 1e-13) * scaled.shape[1]
