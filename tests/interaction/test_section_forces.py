@@ -6,8 +6,16 @@ import pytest
 import axlespan as asp
 from axlespan.bridges import SupportAt
 from axlespan.interaction.simulate import simulate_many
+from axlespan.model.compile import compile_model
+from axlespan.model.from_mesh import Shells, parts_from_mesh
+from axlespan.model.materials import Material
+from axlespan.model.mesh import Mesh
+from axlespan.model.model import Model
 from axlespan.model.motions import HarmonicMotion
 from axlespan.reference import Motion, SimplySupportedBeam, cross_forces
+from axlespan.running.stress_points import StressPoints
+from axlespan.running.structure import Structure
+from axlespan.running.surface import line_over
 
 BRIDGE = {"length": 25.0, "youngs_modulus": 2.87e9, "second_moment": 2.90, "mass_per_length": 2303.0}
 HEAVY = asp.vehicles.sprung_mass(mass=5750.0, stiffness=1.595e6, damping=2e4, unsprung_mass=500.0)
@@ -192,3 +200,35 @@ def test_wrong_names():
     ):
         with pytest.raises(asp.InputError, match=match):
             asp.simulate(crossing, time_step=1e-3, steps=10, **wanted)
+
+
+def test_stresses_of_shells_over_time():
+    """The history is the rows of the point times the displacements, with a support that moves as well."""
+    mesh = Mesh.rectangle((8.0, 2.0), (16, 4), plane="xy")
+    model = Model(plane=False).with_nodes(mesh.points)
+    for part in parts_from_mesh(mesh, {"surface": Shells(Material(3e10, 0.2, 2500.0), 0.3)}):
+        model = model.with_part(part)
+    for x, fixed in ((0.0, ("x", "y", "z")), (8.0, ("y",))):
+        for node in np.flatnonzero(mesh.points[:, 0] == x).tolist():
+            moved = {"z": HarmonicMotion(1e-3, 2.0)} if x else None
+            model = model.with_support(node, fixed, motion=moved)
+    compiled = compile_model(model)
+    path = line_over(model, compiled.table, [[0.0, 0.5, 0.0], [8.0, 0.5, 0.0]])
+    structure = Structure(
+        compiled.system, {"main": path.transformed(compiled.system.elimination)}, model=model
+    )
+    result = asp.simulate(
+        asp.Crossing(structure, asp.Train.of(FORCE), speed=20.0),
+        time_step=2e-3,
+        steps=150,
+        sensors={"mid": 4.1, "end": 7.6},
+        stresses=["end", "mid"],
+        fields=1,
+    )
+    assert result.stress[:2] == ("end.n_x", "end.n_y") and len(result.stress) == 16
+    rows = StressPoints.at(structure, ["end", "mid"], np.array([7.6, 4.1])).rows
+    expected = (rows @ result.fields.displacement[:, structure.system.independent].T).T
+    assert np.abs(result.stress_history - expected).max() < 1e-9 * np.abs(expected).max()
+    # a strip of 2 m takes half of the force's moment when it is in the middle, more or less
+    moment = np.abs(result.at("stress_history", "mid.m_x")).max()
+    assert 0.8 < moment / (P * 8.0 / 4.0 / 2.0) < 2.0

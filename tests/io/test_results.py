@@ -13,6 +13,7 @@ import pytest
 import xarray
 
 from axlespan.errors import InputError, Outcome
+from axlespan.interaction.extras import SECTION_VARIABLES
 from axlespan.interaction.result import VARIABLES, Result
 from axlespan.io.results import FORMAT_VERSION, read_header, read_result, write_result
 
@@ -337,4 +338,4 @@ def test_what_xarray_wrote_again_is_still_a_result(tmp_path):
 
 def test_the_file_layout_knows_every_history_of_a_result():
     fields = {name for name, kind in Result.__annotations__.items() if kind == "FloatArray"}
-    assert fields == {"time", *VARIABLES}
+    assert fields == {"time", *VARIABLES, *SECTION_VARIABLES}  # these are in axlespan.io.result_extras

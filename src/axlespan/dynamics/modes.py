@@ -67,7 +67,7 @@ def participation(
     >>> modes = lowest_modes(np.array([[2.0, -1.0], [-1.0, 1.0]]), M)
     >>> found = participation(modes, M @ np.ones((2, 1)), np.array([5.0]), np.abs(modes.shapes).max(axis=0))
     >>> found.cumulative.round(6).ravel().tolist()
-    [0.959932, 1.0]
+    [0.96, 1.0]
     """
     amounts = modes.shapes.T @ excitation  # Γ of the normalized shapes
     scale = np.where(sizes > 0.0, sizes, 1.0)

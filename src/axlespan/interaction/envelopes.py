@@ -16,6 +16,9 @@ from axlespan.interaction.section_forces import SectionForces
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
+# Values that are there at one time.
+_VALUES = 4_000_000
+
 # quantity -> unit and meaning
 UNITS: Mapping[str, tuple[str, str]] = {
     "moment": ("N m", "bending moment of the beams, sagging positive"),
@@ -77,7 +80,8 @@ class EnvelopeMonitor:
         wanted = plan.settings.envelopes
         if any(name in QUANTITIES for name in wanted):
             segments = np.repeat(np.arange(n - 1), 2)
-            self._forces = SectionForces(plan, segments, np.tile([0.0, 1.0], n - 1))
+            self._of_beams = [name for name in wanted if name in QUANTITIES]
+            self._forces = SectionForces(plan, segments, np.tile([0.0, 1.0], n - 1), self._of_beams)
             dofs.append(self._forces.free_dofs)
         if any(name in _MOTIONS for name in wanted):
             dofs.append(plan.sensor_path.path_dofs)
@@ -87,16 +91,20 @@ class EnvelopeMonitor:
 
     def look(self, steps: IntArray, near: FloatArray, positions: FloatArray, forces: FloatArray) -> None:
         """Look at consecutive steps: ``near`` (3, n_step, n_free) of ``free_dofs``, wheels (n_step, n_contact)."""
-        wanted, times = self._plan.settings.envelopes, self._plan.times_of(steps)
+        at_once = max(1, _VALUES // (4 * len(self._position)))
+        for begin in range(0, len(steps), at_once):
+            some = slice(begin, begin + at_once)
+            self._look(steps[some], near[:, some], positions[some], forces[some])
+
+    def _look(self, steps: IntArray, near: FloatArray, positions: FloatArray, forces: FloatArray) -> None:
+        times = self._plan.times_of(steps)
         if self._forces is not None:
             own = np.searchsorted(self.free_dofs, self._forces.free_dofs)
             sides = self._forces.of(steps, near[:, :, own], positions, forces)
-            for name in wanted:
-                if name in QUANTITIES:
-                    values = sides[:, :, QUANTITIES.index(name)]
-                    self._take(name, times, values[:, ::2], slice(None, -1))
-                    self._take(name, times, values[:, 1::2], slice(1, None))
-        for name in wanted:
+            for i, name in enumerate(self._of_beams):
+                self._take(name, times, sides[:, ::2, i], slice(None, -1))
+                self._take(name, times, sides[:, 1::2, i], slice(1, None))
+        for name in self._plan.settings.envelopes:
             if name in _MOTIONS:
                 self._take(name, times, self._motion(name, times, near), slice(None))
 

@@ -6,6 +6,8 @@ As for the support reactions (N12 (13)), the inertia forces that go with the for
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
@@ -24,35 +26,42 @@ _OVER = 1e-12
 
 
 class SectionForces:
-    """Moment, shear, normal force and torsion at sections of the first line."""
+    """Moment, shear, normal force and torsion, or some of them, at sections of the first line."""
 
-    def __init__(self, plan: Plan, segments: IntArray, xi: FloatArray) -> None:
+    def __init__(
+        self, plan: Plan, segments: IntArray, xi: FloatArray, quantities: Sequence[str] = QUANTITIES
+    ) -> None:
         self._plan = plan
         sections = BeamSections.at(plan.crossing.structure, segments, xi)
         system = plan.crossing.structure.system
-        rows = sections.rows()
+        chosen = np.array([QUANTITIES.index(name) for name in quantities], dtype=np.int64)
+        keep = (np.arange(sections.n_section)[:, None] * len(QUANTITIES) + chosen).ravel()
+        rows = [sp.csr_array(matrix[keep]) for matrix in sections.rows()]
         free = [sp.csc_array(matrix[:, system.free]) for matrix in rows]
         self.free_dofs = np.unique(np.concatenate([matrix.nonzero()[1] for matrix in free])).astype(np.int64)
         self._rows = [sp.csr_array(matrix[:, self.free_dofs]) for matrix in free]
         self._moved = [sp.csr_array(matrix[:, system.prescribed[plan.moving]]) for matrix in rows]
-        self._influences = self._wheels(sections)
-        self._shape = (sections.n_section, len(QUANTITIES))
-        self._inertia = np.zeros(sections.n_row)
+        number = np.full(sections.n_row, -1, dtype=np.int64)
+        number[keep] = np.arange(len(keep))
+        self._influences = self._wheels(sections, number)
+        self._shape = (sections.n_section, len(chosen))
+        self._inertia = np.zeros(len(keep))
 
-    def _wheels(self, sections: BeamSections) -> list[tuple[IntArray, PolynomialPath]]:
+    def _wheels(self, sections: BeamSections, number: IntArray) -> list[tuple[IntArray, PolynomialPath]]:
         """Wheels (n_wheel,) of each line, and their share in the section forces by their position."""
         lines = [point.line for _, _, point, _ in self._plan.crossing.train.contacts]
         result = []
         for line in dict.fromkeys(lines):
             path = sections.influence(line)
             if path is not None:
+                path = path.renumbered(number)
                 wheels = np.array([i for i, name in enumerate(lines) if name == line], dtype=np.int64)
                 footprint = self._plan.settings.footprint
                 result.append((wheels, path.spread(footprint) if footprint > 0.0 else path))
         return result
 
     def of(self, steps: IntArray, near: FloatArray, positions: FloatArray, forces: FloatArray) -> FloatArray:
-        """Section forces (n_step, n_section, 4) at consecutive time indices.
+        """Section forces (n_step, n_section, n_quantity) at consecutive time indices.
 
         Parameters
         ----------
@@ -63,45 +72,44 @@ class SectionForces:
         positions, forces : array (n_step, n_contact)
             Of the wheels.
         """
-        static, viscous, inertial = (
-            (rows @ values.T).T + self._of_supports(matrix, name, steps)
-            for rows, values, matrix, name in zip(
-                self._rows, near, self._moved, ("value", "velocity", "acceleration"), strict=True
-            )
-        )
-        total = static + viscous + self._filtered(steps, inertial)
-        total += self._of_wheels(positions, forces)
-        return np.asarray(total).reshape(len(steps), *self._shape)
+        total = np.zeros((self._shape[0] * self._shape[1], len(steps)))
+        for which, name in enumerate(("value", "velocity", "acceleration")):
+            part = self._linear(which, name, steps, near[which])
+            if part is not None:
+                total += self._filtered(steps, part) if name == "acceleration" else part
+        self._add_wheels(total, positions, forces)
+        return total.reshape(*self._shape, len(steps)).transpose(2, 0, 1)
 
-    def _of_supports(self, matrix: sp.csr_array, name: str, steps: IntArray) -> FloatArray | float:
-        """What supports that move add (n_step, n_row)."""
-        plan = self._plan
-        if not matrix.nnz:
-            return 0.0
-        times, motions = plan.times_of(steps), plan.crossing.structure.system.motions
-        return np.asarray((matrix @ np.array([getattr(motions[j], name)(times) for j in plan.moving])).T)
+    def _linear(self, which: int, name: str, steps: IntArray, near: FloatArray) -> FloatArray | None:
+        """What the d.o.f. and the supports that move give (n_row, n_step); None if nothing."""
+        rows, moved = self._rows[which], self._moved[which]
+        if not rows.nnz and not moved.nnz:
+            return None
+        part = np.asarray(rows @ near.T)
+        if moved.nnz:
+            times, motions = self._plan.times_of(steps), self._plan.crossing.structure.system.motions
+            part += moved @ np.array([getattr(motions[j], name)(times) for j in self._plan.moving])
+        return part
 
     def _filtered(self, steps: IntArray, inertia: FloatArray) -> FloatArray:
         alpha = self._plan.settings.method.alpha
         if alpha == 0.0:
             return inertia
-        result = np.empty_like(inertia)
         for i, step in enumerate(steps):
-            self._inertia = inertia[i] if step == 0 else (inertia[i] + alpha * self._inertia) / (1.0 + alpha)
-            result[i] = self._inertia
-        return result
+            own = inertia[:, i]
+            self._inertia = own.copy() if step == 0 else (own + alpha * self._inertia) / (1.0 + alpha)
+            inertia[:, i] = self._inertia
+        return inertia
 
-    def _of_wheels(self, positions: FloatArray, forces: FloatArray) -> FloatArray:
-        """G X (n_step, n_row) of the wheels in the elements of the sections."""
-        n_step, n_row = len(positions), self._shape[0] * self._shape[1]
-        total = np.zeros(n_step * n_row)
+    def _add_wheels(self, total: FloatArray, positions: FloatArray, forces: FloatArray) -> None:
+        """Add G X (n_row, n_step) of the wheels in the elements of the sections."""
+        n_step = len(positions)
         for wheels, path in self._influences:
             at = positions[:, wheels] - _OVER * (path.stop - path.start)
             step, wheel = np.nonzero(path.carries(at))
             rows, weights = path.weights(at[step, wheel])
             shares = weights * forces[step, wheels[wheel], None]
-            total += np.bincount((step[:, None] * n_row + rows).ravel(), shares.ravel(), len(total))
-        return total.reshape(n_step, n_row)
+            np.add.at(total.reshape(-1), (rows * n_step + step[:, None]).ravel(), shares.ravel())
 
 
 class SectionHistories:

@@ -55,6 +55,7 @@ class Settings:
     solver: str = "auto"
     every: int = 1
     sensors: Mapping[str, float] = field(default_factory=dict)  # name -> position [m]
+    reactions: bool = True  # whether support reactions are kept
     iteration: Iteration = field(default_factory=Iteration)
     fields: Sequence[int] = ()  # time indices of whole fields
     section_forces: tuple[str, ...] = ()  # sensors at which section forces of beams are kept
@@ -77,6 +78,7 @@ def settings_for(
     solver: str = "auto",
     every: int = 1,
     sensors: Mapping[str, float] | None = None,
+    reactions: bool = True,
     iteration: Iteration | None = None,
     fields: Sequence[float] | int | None = None,
     section_forces: Sequence[str] | None = None,
@@ -113,6 +115,7 @@ def settings_for(
         solver,
         int(every),
         dict(sensors or {}),
+        bool(reactions),
         iteration or Iteration(),
         field_steps(fields, float(time_step), int(steps)),
         sensor_names(section_forces, sensors or {}, "section_forces"),

@@ -51,6 +51,7 @@ def simulate(
     steps: int,
     method: Alpha | None = None,
     sensors: Mapping[str, float] | None = None,
+    reactions: bool = True,
     coupling: str = "direct",
     footprint: float | None = None,
     solver: str = "auto",
@@ -79,6 +80,8 @@ def simulate(
         dashpot that ends at a massless contact point).
     sensors : mapping of name to position, optional
         Positions [m] on the first running line whose vertical motion is kept.
+    reactions : bool
+        Whether support reactions are kept.
     coupling : {"direct", "iterative", "refactored", "literal"}
         The direct method, its two rivals, or the direct method as N12 prints it (dense; for small models).
     footprint : float, optional
@@ -129,6 +132,7 @@ def simulate(
         solver=solver,
         every=every,
         sensors=sensors,
+        reactions=reactions,
         iteration=iteration,
         fields=fields,
         section_forces=section_forces,

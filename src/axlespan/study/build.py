@@ -176,6 +176,7 @@ def _options(analysis: Any, output: Any, made: BuiltStructure) -> Mapping[str, A
         "coupling": analysis.method,
         "solver": analysis.solver,
         "every": output.every,
+        "reactions": output.reactions,
         "sensors": {
             name: made.sensor_position(at, f"output.sensors.{name}") for name, at in output.sensors.items()
         },

@@ -51,22 +51,21 @@ def vehicle_of_mesh(case: MeshVehicle, gravity: float) -> Vehicle:
         rule = "must be of the kind rayleigh for vehicles"
         raise InputError(rule, field="damping", fix="Write {kind: rayleigh, alpha: 0 1/s, beta: 0.1 ms}")
     built = model_of(case, case.supports, law)
-    groups = [Wheels(at=case.wheels)] if not isinstance(case.wheels, tuple) else list(case.wheels)
+    groups = case.wheels if isinstance(case.wheels, tuple) else (Wheels(at=case.wheels),)
     if not groups:
         raise InputError("must have at least one wheel", field="wheels")
-    chosen = [_nodes_of(built, group, f"wheels.{i}.at") for i, group in enumerate(groups)]
-    if not isinstance(case.wheels, tuple):
-        chosen = [_nodes_of(built, groups[0], "wheels")]
+    places = [f"wheels.{i}.at" for i in range(len(groups))] if groups is case.wheels else ["wheels"]
+    chosen = [_nodes_of(built, group, place) for group, place in zip(groups, places, strict=True)]
     every = np.concatenate(chosen)
     if len(np.unique(every)) < len(every):
         raise InputError("names a node twice", field="wheels")
     require_held(built, every, "wheel", "wheels")
     labels = built.model.node_labels()
-    places = built.model.points[every]
+    points = built.model.points[every]
     lines = [group.line for group, nodes in zip(groups, chosen, strict=True) for _ in nodes]
-    order = np.lexsort([-places[:, 1], -places[:, 0]])
-    front = float(places[:, 0].max())
-    wheels = [_Wheel(labels[every[i]], front - float(places[i, 0]), lines[i]) for i in order.tolist()]
+    order = np.lexsort([-points[:, 1], -points[:, 0]])
+    front = float(points[:, 0].max())
+    wheels = [_Wheel(labels[every[i]], front - float(points[i, 0]), lines[i]) for i in order.tolist()]
     name = case.file.stem if case.file is not None else "mesh"
     return _vehicle(case, built.compiled.system, wheels, name, gravity)
 

@@ -13,6 +13,7 @@ import scipy.sparse as sp
 from axlespan import units
 from axlespan.errors import InputError
 from axlespan.io.matrices import DofMap, MatrixModel, ModalModel, NodeTable, read_matrices, read_modal
+from axlespan.io.matrices.read import format_of
 from axlespan.model.dofs import COMPONENTS
 from axlespan.study.case_matrices import Matrices, MatricesStructure, MatrixUnits
 from axlespan.study.nodes import NodeBook, under
@@ -77,6 +78,12 @@ def matrices_of(case: Matrices, damping: Path | None) -> tuple[MatrixModel, RowB
     """
     assert case.stiffness is not None and case.mass is not None  # the schema asks for both
     named = case.dofs if isinstance(case.dofs, tuple) else None
+    if case.dofs is None and case.coordinates is not None:
+        with under("stiffness"):
+            form = case.format or format_of(case.stiffness)
+        if form in ("matrix-market", "npz"):
+            fix = "Add dofs: rows.csv, a file of lines row, node, component"
+            raise InputError("is missing; coordinates are no use without it", field="dofs", fix=fix)
     listed = None if named is None else _dofs_of(named)
     with under("dofs" if named else "stiffness"):
         model = read_matrices(

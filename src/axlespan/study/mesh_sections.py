@@ -91,8 +91,9 @@ def section_kind(case: Mesh, mesh: MeshValue, name: str, section: Section) -> st
         rule = f"must be {fitting}: the elements of '{name}' are {' and '.join(kinds)}"
         raise InputError(rule, field=f"{place}.kind")
     if (kind == "plane") != case.plane and kind in ("plane", "solid", "shell"):
-        fix = "Write plane: true in the structure" if kind == "plane" else "Delete plane: true"
-        raise InputError(f"is {kind}, which does not fit the model", field=place, fix=fix)
+        fix = "Write plane: true" if kind == "plane" else "Delete plane: true"
+        rule = "needs a plane model" if kind == "plane" else f"must not be {kind} in a plane model"
+        raise InputError(rule, field=place, fix=fix)
     _check_values(section, kind, place, case.plane)
     return kind
 
