@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 
 import axlespan as asp
-from axlespan.io.result_extras import append_extras, with_extras
 from axlespan.io.results import read_result, write_result
 
 BRIDGE = asp.bridges.simple_span(
@@ -29,8 +28,7 @@ def result():
 
 def test_there_and_back(result, tmp_path):
     path = write_result(result, tmp_path / "result.nc")
-    append_extras(result, path)
-    again = with_extras(read_result(path), path)
+    again = read_result(path)
     assert again.section == ("näher", "mid")
     assert np.array_equal(again.at("section_moment", "mid"), result.at("section_moment", "mid"))
     assert np.array_equal(again.section_shear, result.section_shear)
@@ -48,7 +46,6 @@ def test_there_and_back(result, tmp_path):
 
 def test_names_units_and_dimensions(result, tmp_path):
     path = write_result(result, tmp_path / "result.nc")
-    append_extras(result, path)
     with h5py.File(path) as file:
         for name, unit, dimensions in (
             ("section_moment", "N m", ["time", "section"]),
@@ -68,7 +65,6 @@ def test_names_units_and_dimensions(result, tmp_path):
 def test_xarray_has_the_same(result, tmp_path):
     xarray = pytest.importorskip("xarray")
     path = write_result(result, tmp_path / "result.nc")
-    append_extras(result, path)
     made = result.to_xarray()
     with xarray.open_dataset(path, engine="h5netcdf") as stored:
         assert set(stored.variables) == set(made.variables)
@@ -80,11 +76,10 @@ def test_xarray_has_the_same(result, tmp_path):
     assert float(moment) == result.at("section_moment", "mid")[500]
 
 
-def test_a_plain_result_stays_as_it_is(tmp_path):
+def test_a_plain_result_has_none(tmp_path):
     plain = asp.simulate(asp.Crossing(BRIDGE, TRAIN, speed=30.0), time_step=1e-3, steps=5)
     path = write_result(plain, tmp_path / "result.nc")
-    before = path.read_bytes()
-    append_extras(plain, path)
-    assert path.read_bytes() == before
-    again = with_extras(read_result(path), path)
+    with h5py.File(path) as file:
+        assert not {"section", "station", "field_time", "dof"} & set(file)
+    again = read_result(path)
     assert again.fields is None and again.envelopes is None and again.section == ()

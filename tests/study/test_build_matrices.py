@@ -224,7 +224,8 @@ def test_few_modes_as_tables(references, tmp_path):
     (tmp_path / "shapes.csv").write_text("\n".join(rows) + "\n")
     write_coordinates(body.nodes, tmp_path / "nodes.csv")
     built, result = crossed(
-        "kind: matrices, modes: modes.csv, shapes: shapes.csv, coordinates: nodes.csv, running_line: {nodes: [1, 2, 3, 4, 5, 6, 7, 8, 9]}",
+        "kind: matrices, modes: modes.csv, shapes: shapes.csv, coordinates: nodes.csv, "
+        "running_line: {nodes: [1, 2, 3, 4, 5, 6, 7, 8, 9]}",
         tmp_path,
     )
     ours, theirs = result.vehicle_displacement, reference.vehicle_displacement
@@ -298,7 +299,8 @@ def test_springs_dashpots_and_motions_at_nodes(references, tmp_path):
         "{at: 5, motion: {z: {kind: constant, value: -3 mm}}, name: pier}, {at: n9, fixed: [z], name: right}"
     )
     built, result = crossed(
-        f"{keys}, supports: [{held}], running_line: {{nodes: {{z: 0 m}}}}, damping: {{kind: rayleigh, alpha: 0.3 1/s, beta: 0.1 ms}}",
+        f"{keys}, supports: [{held}], running_line: {{nodes: {{z: 0 m}}}}, "
+        "damping: {kind: rayleigh, alpha: 0.3 1/s, beta: 0.1 ms}",
         tmp_path,
     )
     assert result.support == ("left.x", "pier.z", "right.z", "left.z")
@@ -366,7 +368,8 @@ def test_an_inclined_line_is_that_of_inclined_beams(tmp_path):
 # --- vehicles ------------------------------------------------------------------------------------------
 
 CAR = """\
-structure: {{kind: simple-span, length: 25 m, youngs_modulus: 2.87 GPa, second_moment: 2.9 m^4, mass_per_length: 2303 kg/m, elements: 10}}
+structure:
+  {{kind: simple-span, length: 25 m, youngs_modulus: 2.87 GPa, second_moment: 2.9 m^4, mass_per_length: 2303 kg/m, elements: 10}}
 train:
   - {{{vehicle}}}
 crossing: {{speed: 25 m/s}}
@@ -440,14 +443,14 @@ def test_wrong_vehicles(tmp_path):
         return str(caught.value)
 
     assert said("wheels: [{dof: 2, position: 0 m}]") == (
-        "case.yaml:3:5: train.0.dofs: is missing; the weight acts on the vertical d.o.f.. Add dofs: rows.csv, or dofs: "
+        "case.yaml:4:5: train.0.dofs: is missing; the weight acts on the vertical d.o.f.. Add dofs: rows.csv, or dofs: "
         "[body.z, body.pitch, ...]"
     )
     assert said("dofs: [body.z, body.ry], wheels: [{dof: body.ry, position: 0 m}]") == (
-        "case.yaml:3:88: train.0.wheels.0.dof = body.ry: must be vertical: body.ry is not. Name a d.o.f. in z"
+        "case.yaml:4:88: train.0.wheels.0.dof = body.ry: must be vertical: body.ry is not. Name a d.o.f. in z"
     )
     assert said("dofs: [body.z, wheel.z], wheels: [{dof: wheel.z}]") == (
-        "case.yaml:3:82: train.0.wheels.0.position: is missing. Add it, or coordinates of the nodes"
+        "case.yaml:4:82: train.0.wheels.0.position: is missing. Add it, or coordinates of the nodes"
     )
 
 

@@ -243,7 +243,12 @@ train:
     mesh: {{rectangle: {{lengths: [4 m, 2 m], divisions: [4, 2], origin: [0 m, 1 m, 1.5 m]}}}}
     materials: {{steel: {{youngs_modulus: 210 GPa, poisson_ratio: 0.3, density: 7.85 t/m^3}}}}
     sections: {{surface: {{material: steel, thickness: 40 mm}}}}
-    points: {{spare: [2 m, 2 m, 0.3 m], front-left: [4 m, 3 m, 0 m], front-right: [4 m, 1 m, 0 m], rear-left: [0 m, 3 m, 0 m], rear-right: [0 m, 1 m, 0 m]}}
+    points:
+      spare: [2 m, 2 m, 0.3 m]
+      front-left: [4 m, 3 m, 0 m]
+      front-right: [4 m, 1 m, 0 m]
+      rear-left: [0 m, 3 m, 0 m]
+      rear-right: [0 m, 1 m, 0 m]
     springs:
       - {{between: [x_max/y_max, front-left], {SPRING}}}
       - {{between: [x_max/y_min, front-right], {SPRING}}}
@@ -414,22 +419,32 @@ def test_shells_need_a_thickness_and_beams_their_moments():
     )
 
 
+WHEELS = "wheels: [{at: {y: 3 m, z: 0 m}, line: left-wheels}, {at: {y: 1 m, z: 0 m}, line: right-wheels}]"
+
+
 @pytest.mark.parametrize(
     ("old", "new", "expected"),
     [
-        ("supports: [{at: {z: 0 m}, fixed: [x, y]}]", "supports: [{at: {z: 0 m}, fixed: [y]}]",
-         "must stand on its wheels, but can move freely at"),
-        ("    wheels: [{at: {y: 3 m, z: 0 m}, line: left-wheels}, {at: {y: 1 m, z: 0 m}, line: right-wheels}]",
-         "    wheels: [{at: front-left}, {at: front-left}]", "train.0.wheels = [{at: front-left}, {at: front-left}]: names a node twice"),
-        ("wheels: [{at: {y: 3 m, z: 0 m}, line: left-wheels}, {at: {y: 1 m, z: 0 m}, line: right-wheels}]",
-         "wheels: spare\n    merge: 1 mm", "train.0.wheels = spare: has nodes without a vertical d.o.f.: spare. Choose nodes of elements "
-         "or springs"),
-        ("    supports: [{at", "    damping: {kind: modal, ratio: 1 %}\n    supports: [{at",
-         "train.0.damping = {kind: modal, ratio: 1 %}: must be of the kind rayleigh for vehicles. Write {kind: rayleigh, alpha: 0 "
-         "1/s, beta: 0.1 ms}"),
+        ("fixed: [x, y]", "fixed: [y]", "must stand on its wheels, but can move freely at"),
+        (
+            WHEELS,
+            "wheels: [{at: front-left}, {at: front-left}]",
+            "train.0.wheels = [{at: front-left}, {at: front-left}]: names a node twice",
+        ),
+        (
+            WHEELS,
+            "wheels: spare",
+            "train.0.wheels = spare: has nodes without a vertical d.o.f.: spare. Choose nodes of elements or springs",
+        ),
+        (
+            WHEELS,
+            WHEELS + "\n    damping: {kind: modal, ratio: 1 %}",
+            "train.0.damping = {kind: modal, ratio: 1 %}: must be of the kind rayleigh for vehicles. "
+            "Write {kind: rayleigh, alpha: 0 1/s, beta: 0.1 ms}",
+        ),
         ("line: left-wheels", "line: left-wheel", "is not a known running line. Did you mean 'left-wheels'?"),
     ],
-)  # fmt: skip
+)
 def test_wrong_vehicles(old, new, expected):
     assert old in SHELL_CAR
     with pytest.raises(InputError) as caught:

@@ -121,6 +121,13 @@ def test_the_fixed_names_are_there():
         parts["Analysis"]["properties"]
     )
     assert {"from", "to", "amplitude", "wavelength"} <= set(parts["HarmonicIrregularity"]["properties"])
-    assert {"sensors", "every", "reactions", "fields", "section_forces", "stresses", "envelopes"} == set(
-        parts["Output"]["properties"]
-    )
+    assert {
+        "sensors",
+        "compare",
+        "every",
+        "reactions",
+        "fields",
+        "section_forces",
+        "stresses",
+        "envelopes",
+    } == set(parts["Output"]["properties"])

@@ -153,6 +153,7 @@ def test_matrices(exported, tmp_path, edits, expected):
 
 
 def test_the_galleries_are_read_as_a_whole():
-    titles = [case.id for name in ("meshes.txt", "matrices.txt") for case in wrong_cases(name)]
-    assert len(titles) > 50
-    assert len(set(titles)) == len(titles)
+    for name in ("meshes.txt", "matrices.txt"):
+        titles = [case.id for case in wrong_cases(name)]
+        assert len(titles) > 25
+        assert len(set(titles)) == len(titles)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import os
 from importlib.resources import files
 from pathlib import Path
 
 from axlespan.cli.messages import DONE, refuse, say
-from axlespan.errors import InputError
+from axlespan.errors import InputError, Place
 from axlespan.model.dofs import nearest
 
 
@@ -16,7 +17,7 @@ def shipped() -> dict[str, str]:
     cases = (entry for entry in folder.iterdir() if entry.name.endswith(".yaml"))
     return {
         entry.name.removesuffix(".yaml"): entry.read_text(encoding="utf-8")
-        for entry in sorted(cases, key=str)
+        for entry in sorted(cases, key=lambda entry: entry.name.removesuffix(".yaml"))
     }
 
 
@@ -30,30 +31,31 @@ def list_or_copy(names: list[str], output: Path, *, force: bool) -> int:
         say("Copy one with: axlespan examples NAME, then run it with: axlespan run NAME.yaml -o out")
         return DONE
     try:
-        return _copy(list(cases) if names == ["all"] else names, cases, output, force)
+        return _copy(names, cases, output, force)
     except InputError as error:
         return refuse(error)
 
 
 def _copy(names: list[str], cases: dict[str, str], output: Path, force: bool) -> int:
-    targets = []
-    for name in (entry.removesuffix(".yaml") for entry in names):
+    wanted = dict.fromkeys(name.removesuffix(".yaml") for name in names)
+    if "all" in wanted:
+        wanted = dict.fromkeys(cases)
+    targets: list[tuple[Path, str]] = []
+    for name in wanted:
         if name not in cases:
             raise nearest(name, list(cases), "example")
-        target = output / f"{name}.yaml"
-        if target.exists() and not force:
-            raise InputError(
-                "exists already", field="file", value=str(target), fix="Use --force to replace it"
-            )
-        targets += [(target, cases[name]), *_companions(name, output)]
-    try:
-        output.mkdir(parents=True, exist_ok=True)
-        for target, text in targets:
-            target.parent.mkdir(exist_ok=True)
+        targets += [(output / f"{name}.yaml", cases[name]), *_companions(name, output)]
+    there = next((target for target, _ in targets if os.path.lexists(target)), None)
+    if there is not None and not force:
+        raise InputError("exists already", place=Place(str(there)), fix="Use --force to replace it")
+    for target, text in targets:
+        try:
+            target.parent.mkdir(parents=True, exist_ok=True)
             target.write_text(text, encoding="utf-8")
-            say(str(target))
-    except OSError as error:
-        raise InputError(f"cannot be written: {error.strerror}", field="folder", value=str(output)) from None
+        except OSError as error:
+            rule = f"cannot be written: {error.strerror or error}"
+            raise InputError(rule, place=Place(str(target)), fix="Name another folder with -o") from None
+        say(str(target))
     return DONE
 
 

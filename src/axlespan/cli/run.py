@@ -14,7 +14,6 @@ from axlespan.errors import AnalysisError, AxlespanError, InputError
 from axlespan.interaction.result import Result
 from axlespan.interaction.simulate import run_plan
 from axlespan.io.paraview import require_model, write_paraview
-from axlespan.io.result_extras import append_extras
 from axlespan.io.results import write_result
 from axlespan.io.summary import summary, summary_lines, write_summary
 from axlespan.irregularity import spectrum_names
@@ -108,7 +107,6 @@ def _computed(built: BuiltCase) -> tuple[Result | None, int]:
 def _written(built: BuiltCase, result: Result, stage: Path, folder: Path, wanted: Wanted) -> list[str]:
     """Write all files, then move them to their folder; what is to be said of the result."""
     write_result(result, stage / "result.nc", case_text=built.loaded.source.text)
-    append_extras(result, stage / "result.nc")
     files = ["result.nc", "summary.json"]
     if wanted.figures:
         files += _draw(built, result, stage)

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from os import PathLike
-from pathlib import Path
 from typing import Any
 
 import h5netcdf
@@ -49,30 +46,3 @@ def read_extras(file: h5py.File) -> dict[str, Any]:
         elif name in _NUMBERS or name.startswith(("section_", "envelope_", "field_")):
             arrays[name] = np.asarray(data[...], dtype=np.float64)
     return extras_from(arrays)
-
-
-def append_extras(result: Result, path: str | PathLike[str]) -> None:
-    """Add them to the file of a result; it is replaced as a whole or not at all.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be written.
-    """
-    if not extra_coordinates(result):
-        return
-    place = Path(path)
-    part = place.with_name(f".{place.name}.extras.part")
-    try:
-        part.write_bytes(place.read_bytes())
-        with h5netcdf.File(part, "a") as file:
-            write_extras(file, result)
-        part.replace(place)
-    finally:
-        part.unlink(missing_ok=True)
-
-
-def with_extras(result: Result, path: str | PathLike[str]) -> Result:
-    """Return a result that was read from a file with its section forces, envelopes and fields as well."""
-    with h5py.File(path, "r") as file:
-        return replace(result, **read_extras(file))

@@ -21,6 +21,7 @@ import numpy.typing as npt
 import axlespan
 from axlespan.errors import InputError, Outcome
 from axlespan.interaction.result import VARIABLES, Result
+from axlespan.io.result_extras import read_extras, write_extras
 from axlespan.io.strict_json import to_json
 
 FloatArray = npt.NDArray[np.float64]
@@ -95,6 +96,7 @@ def write_result(
         file.attrs.update(_attributes(result, case_text, version or axlespan.__version__))
         _write_coordinates(file, result)
         _write_histories(file, result)
+        write_extras(file, result)
     try:
         part.write_bytes(content.getbuffer())
         os.replace(part, place)
@@ -180,6 +182,7 @@ def read_result(path: str | PathLike[str]) -> Result:
             time=time,
             **coordinates,
             **histories,
+            **read_extras(file),
             outcome=header.outcome,
             checks=header.checks,
             facts=header.facts,

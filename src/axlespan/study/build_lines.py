@@ -11,7 +11,6 @@ from axlespan.errors import InputError
 from axlespan.model.continuum_parts import PlanePart, SolidPart
 from axlespan.model.parts import BeamPart
 from axlespan.model.shell_parts import ShellPart
-from axlespan.running.chain import ordered_along
 from axlespan.running.facets import TOP
 from axlespan.running.line import path_on_beams
 from axlespan.running.path import PolynomialPath
@@ -47,8 +46,7 @@ def _line(line: MeshLine, built: MeshModel, place: str) -> PolynomialPath:
     model, table = built.model, built.compiled.table
     if line.nodes is not None:
         nodes = built.book.chosen(line.nodes, f"{place}.nodes")
-        with under(f"{place}.nodes"):
-            nodes = nodes[ordered_along(model.points[nodes], "nodes")]
+        nodes = built.book.along(nodes, f"{place}.nodes", twins=True)
         if line.surface is None and _on_beams(built, nodes):
             with under(place):
                 return path_on_beams(model, table, nodes.tolist(), start=line.start)

@@ -22,11 +22,9 @@ import numpy.typing as npt
 from axlespan.errors import InputError
 from axlespan.io.lines import Lines, table_of
 from axlespan.model.dofs import COMPONENTS
-from axlespan.running.chain import ordered_along
 from axlespan.running.path import PolynomialPath
 from axlespan.study.case_matrices import MatricesLine
 from axlespan.study.matrix_body import RowBook
-from axlespan.study.nodes import under
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -80,8 +78,7 @@ def _of_nodes(case: MatricesLine, book: RowBook, place: str) -> Stations:
             raise InputError("must be at least two nodes", field=place)
     else:
         chain = book.nodes.chosen(case.nodes, place)
-        with under(place):
-            chain = chain[ordered_along(book.nodes.points[chain], "nodes")]
+        chain = book.nodes.along(chain, place)
     points = book.nodes.points[chain]
     steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
     if np.any(steps == 0.0):

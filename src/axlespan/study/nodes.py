@@ -10,8 +10,10 @@ from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
+from scipy.spatial import cKDTree
 
 from axlespan.errors import InputError
+from axlespan.running.chain import ordered_along
 from axlespan.study.case_nodes import NodesAt
 from axlespan.study.faults import InputErrors, listed, nearest
 
@@ -101,6 +103,31 @@ class NodeBook:
             shown = self.shown(found)
             raise InputError(f"must be one node, and has {len(found)}: {shown}", field=place)
         return int(found[0])
+
+    def along(self, nodes: IntArray, place: str, *, twins: bool = False) -> IntArray:
+        """Nodes in the order of the line that they form, from its end with the lower x.
+
+        Parameters
+        ----------
+        nodes : array (n,)
+            Positions of nodes.
+        place : str
+            Path in the case, for errors.
+        twins : bool
+            Whether of nodes at the same place the first one counts; they are refused otherwise.
+
+        Raises
+        ------
+        InputError
+            If they form no single line.
+        """
+        pairs = cKDTree(self.points[nodes]).query_pairs(self.tolerance, output_type="ndarray")
+        if len(pairs) and not twins:
+            pair = nodes[np.sort(pairs[0])]
+            raise InputError(f"has two nodes at the same place, {self.shown(pair)}", field=place)
+        nodes = np.delete(nodes, np.unique(pairs.max(axis=1, initial=0))) if len(pairs) else nodes
+        with under(place):
+            return np.asarray(nodes[ordered_along(self.points[nodes], "nodes")])
 
     def shown(self, nodes: IntArray, limit: int = 6) -> str:
         """Numbers (or names) of nodes for a message."""
