@@ -48,7 +48,22 @@ def test_the_table(case):
     lines = out.splitlines()
     assert lines[0] == "Footbridge"
     assert lines[1] == "  simple span, 24 free d.o.f., mass 80 t along z"
-    assert lines[3].split() == ["mode", "f", "[Hz]", "T", "[s]", "damping", "mass", "[t]", "Γ", "z", "m", "z", "Σm", "z"]
+    assert lines[3].split() == [
+        "mode",
+        "f",
+        "[Hz]",
+        "T",
+        "[s]",
+        "damping",
+        "mass",
+        "[t]",
+        "Γ",
+        "z",
+        "m",
+        "z",
+        "Σm",
+        "z",
+    ]
     rows = [line.split() for line in lines[4:8]]
     assert lines[8] == "" and len(lines) == 10
     n = np.arange(1, 5)

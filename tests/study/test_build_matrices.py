@@ -1,14 +1,17 @@
 """Structures and vehicles from matrices and modes: as exported, read back and crossed."""
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
 import scipy.sparse as sp
+from ruamel.yaml import YAML
 from scipy.linalg import eigh
 
 import axlespan as asp
+from axlespan.cli.examples import list_or_copy
 from axlespan.errors import InputError
 from axlespan.interaction.simulate import run_plan
 from axlespan.io.matrices import (
@@ -23,12 +26,13 @@ from axlespan.io.matrices import (
     write_modal,
     write_npz,
 )
+from axlespan.linalg.eigen import lowest_modes
 from axlespan.model.compile import Compiled, compile_model
 from axlespan.model.from_mesh import Solids
 from axlespan.model.mesh import Mesh
 from axlespan.running.line import path_on_beams
 from axlespan.running.surface import line_over
-from axlespan.study import read_case
+from axlespan.study import load_case, read_case, schema
 from axlespan.study.build import build
 
 STEPS = 250
@@ -454,13 +458,39 @@ def test_wrong_vehicles(tmp_path):
     )
 
 
-def test_the_shipped_example_is_the_continuous_beam(tmp_path):
+def test_the_shipped_example_is_copied_with_its_files(tmp_path, capsys):
+    assert list_or_copy(["own-matrices"], tmp_path, force=False) == 0
+    copied = sorted(str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*.*"))
+    assert copied == [
+        "own-matrices.yaml",
+        *(f"own-matrices/{name}" for name in ("dofs.csv", "mass.mtx", "nodes.csv", "stiffness.mtx")),
+    ]
+    assert (
+        load_case(tmp_path / "own-matrices.yaml").case.structure.mass
+        == tmp_path / "own-matrices" / "mass.mtx"
+    )
+
+
+def test_the_shipped_example_is_the_continuous_beam():
     """own-matrices.yaml: two spans of 30 m; the first frequencies of the same beam in closed form."""
     case = Path(asp.__file__).parent / "examples" / "own-matrices.yaml"
     built = build(read_case(case.read_text(encoding="utf-8"), folder=case.parent))
     first = np.pi / 2.0 / 30.0**2 * np.sqrt(210e9 * 0.35 / 14e3)
-    from axlespan.linalg.eigen import lowest_modes
-
     modes = lowest_modes(built.plan.structure.K, built.plan.structure.M, 2)
     np.testing.assert_allclose(modes.frequencies, first * np.array([1.0, (3.9266 / np.pi) ** 2]), rtol=2e-4)
     assert built.plan.settings.sensors == {"first-span": 15.0, "second-span": 45.0, "quarter": 15.0}
+
+
+def test_what_the_page_on_imported_models_shows():
+    """Every block of the page fits the schema; the files that they name need not be there."""
+    jsonschema = pytest.importorskip("jsonschema")
+    page = Path(__file__).parents[2] / "docs" / "imported-models.md"
+    shown = re.findall(
+        r"^```yaml\n(.*?)^```", page.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE
+    )
+    rest = YAML(typ="safe", pure=True).load(CAR.format(vehicle="vehicle: ice3"))
+    validator = jsonschema.Draft202012Validator(schema())
+    for block in shown:
+        case = {**rest, **YAML(typ="safe", pure=True).load(block)}
+        assert [error.message for error in validator.iter_errors(case)] == [], block
+    assert len(shown) == 5

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from ruamel.yaml import YAML
 
 import axlespan as asp
 from axlespan.errors import InputError
@@ -16,7 +17,7 @@ from axlespan.model.compile import compile_model
 from axlespan.model.from_mesh import Solids
 from axlespan.model.mesh import CellBlock, Mesh
 from axlespan.running.surface import line_over
-from axlespan.study import read_case
+from axlespan.study import read_case, schema
 from axlespan.study.build import build
 
 CONCRETE = "materials: {concrete: {youngs_modulus: 30 GPa, poisson_ratio: 0.2, density: 2500 kg/m^3}}"
@@ -320,6 +321,26 @@ analysis: {time_step: 1 ms, steps: 100}
     assert "1.n3.z" in result.vehicle_dof
 
 
+def test_any_vehicle_may_run_on_another_line():
+    train = "{vehicle: sprung-mass, mass: 5750 kg, stiffness: 1595 kN/m, count: 2, spacing: 3 m}"
+    rest = REST.replace(train, train.replace("}", ", line: right-wheels}"))
+    built = built_of(*SHELL_BRIDGE, rest=rest)
+    assert {point.line for _, _, point, _ in built.crossing.train.contacts} == {"right-wheels"}
+    left = run_plan(built_of(*SHELL_BRIDGE, rest=rest.replace("right-wheels", "left-wheels")).plan)
+    right = run_plan(built.plan)
+    # the bridge is symmetric about y = 2 m, and the sensor stands on the left line
+    assert np.abs(right.contact_force / left.contact_force - 1.0).max() < 1e-9
+    assert 0.7 < right.sensor_displacement.min() / left.sensor_displacement.min() < 0.99
+
+
+@pytest.mark.parametrize("name", ["neves2012-3.2-solid", "solid-beam-coarse", "own-matrices"])
+def test_the_schema_takes_the_shipped_examples(name):
+    jsonschema = pytest.importorskip("jsonschema")
+    text = (Path(asp.__file__).parent / "examples" / f"{name}.yaml").read_text(encoding="utf-8")
+    errors = jsonschema.Draft202012Validator(schema()).iter_errors(YAML(typ="safe", pure=True).load(text))
+    assert [error.message for error in errors] == []
+
+
 # --- links, ties, springs, masses ---------------------------------------------------------------------
 
 
@@ -442,7 +463,11 @@ WHEELS = "wheels: [{at: {y: 3 m, z: 0 m}, line: left-wheels}, {at: {y: 1 m, z: 0
             "train.0.damping = {kind: modal, ratio: 1 %}: must be of the kind rayleigh for vehicles. "
             "Write {kind: rayleigh, alpha: 0 1/s, beta: 0.1 ms}",
         ),
-        ("line: left-wheels", "line: left-wheel", "is not a known running line. Did you mean 'left-wheels'?"),
+        (
+            "line: left-wheels",
+            "line: left-wheel",
+            "train.0: running line = 'left-wheel': is not a known running line. Did you mean 'left-wheels'?",
+        ),
     ],
 )
 def test_wrong_vehicles(old, new, expected):

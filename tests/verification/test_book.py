@@ -61,7 +61,7 @@ def test_names_are_unique_and_columns_hold_their_text():
     assert len(set(names)) == len(names) >= 20
     assert all(name == name.lower() and " " not in name for name in names)
     assert all(item.title and item.source and item.description for item in book.CASES)
-    assert [item.name for item in book.CASES if item.long] == ["couplings-train"]
+    assert [item.name for item in book.CASES if item.long] == ["couplings-train", "neves-3.2-solid"]
 
 
 def test_long_cases_run_on_request_only():
@@ -137,7 +137,9 @@ def test_the_command_names_what_it_leaves_out_and_what_it_does_not_know(monkeypa
     monkeypatch.setattr(verify, "run", lambda cases: book.run([GOOD]))
     assert verify.run_book(full=False, only=None) == 0
     last = capsys.readouterr().out.splitlines()[-1]
-    assert last == "Left out, because they take longer: couplings-train. Run them with --full."
+    assert (
+        last == "Left out, because they take longer: couplings-train, neves-3.2-solid. Run them with --full."
+    )
     assert verify.run_book(full=False, only="timosenko") == 2
     captured = capsys.readouterr()
     assert captured.out == ""

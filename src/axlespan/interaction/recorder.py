@@ -199,7 +199,9 @@ class Recorder:
             vehicle_displacement=h.vehicle["displacement"][:n],
             vehicle_velocity=h.vehicle["velocity"][:n],
             vehicle_acceleration=h.vehicle["acceleration"][:n],
-            support_reaction=h.support_reaction[:n] if plan.settings.reactions else h.support_reaction[:n, :0],
+            support_reaction=h.support_reaction[:n]
+            if plan.settings.reactions
+            else h.support_reaction[:n, :0],
             section=self.sections.names,
             **self.sections.histories(n),
             stress=self.stresses.names,

@@ -65,7 +65,7 @@ def build(loaded: LoadedCase) -> BuiltCase:
         made = structure_of(case.structure)
         require_stable(made.structure, case.structure)
     with pointing(loaded, "train"):
-        train = _train(loaded)
+        train = _train(loaded, made.structure)
     with pointing(loaded, "crossing"):
         crossing = _crossing(loaded, made.structure, train)
     with pointing(loaded, "analysis"):
@@ -81,13 +81,15 @@ def build(loaded: LoadedCase) -> BuiltCase:
 # --- train -----------------------------------------------------------------------------------------
 
 
-def _train(loaded: LoadedCase) -> Train:
+def _train(loaded: LoadedCase, structure: Structure) -> Train:
     entries = loaded.case.train
     built = []
     for number, entry in enumerate(entries):
         with pointing(loaded, f"train.{number}"):
             built.append(vehicle_of(entry, loaded.case.analysis.gravity))
             built[-1].static_forces(loaded.case.analysis.gravity)  # it stands, and no wheel pulls
+            for name in {point.line for point in built[-1].contacts}:
+                structure.line(name)  # it is there
     wheelbases = [max(point.behind for point in vehicle.contacts) for vehicle in built]
     heads = case_train.first_wheels(entries, wheelbases, [None] * len(built))
     placed = [

@@ -59,7 +59,8 @@ def _mesh_facts(built: MeshModel) -> list[str]:
     case, mesh = built.case, built.mesh
     counts = Counter[str]()
     for block in mesh.blocks:
-        counts[block.kind] += len(block)
+        if block.kind != "point1":  # how Gmsh writes sets of nodes
+            counts[block.kind] += len(block)
     blocks = ", ".join(f"{count} {kind}" for kind, count in counts.items())
     sections = []
     for name, section in case.sections.items():

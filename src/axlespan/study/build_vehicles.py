@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from axlespan import vehicles
 from axlespan.errors import InputError
+from axlespan.running.structure import MAIN_LINE
 from axlespan.study import case_train
 from axlespan.study.case_multibody import Multibody
 from axlespan.study.case_vehicle_imported import MatricesVehicle, MeshVehicle
@@ -20,6 +23,16 @@ def vehicle_of(case: case_train.Entry, gravity: float) -> Vehicle:
     InputError
         If something is wrong that only shows now; fields are paths under the entry.
     """
+    vehicle = _vehicle(case, gravity)
+    if case.line is None:
+        return vehicle
+    contacts = [
+        replace(point, line=case.line) if point.line == MAIN_LINE else point for point in vehicle.contacts
+    ]
+    return replace(vehicle, contacts=tuple(contacts))
+
+
+def _vehicle(case: case_train.Entry, gravity: float) -> Vehicle:
     if isinstance(case, case_train.SprungMass):
         return vehicles.sprung_mass(
             mass=case.mass, stiffness=case.stiffness, damping=case.damping, unsprung_mass=case.unsprung_mass

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 
 from axlespan.errors import InputError
-from axlespan.verification import beams, crossings, forces, methods, supports, track, wheels
+from axlespan.verification import beams, crossings, forces, methods, solids, supports, track, wheels
 from axlespan.verification.case import Case, Row
 
 #: All cases, theme by theme. A new theme is a module with a tuple ``CASES``, named here.
@@ -20,6 +20,7 @@ CASES: tuple[Case, ...] = (
     *track.CASES,
     *beams.CASES,
     *methods.CASES,
+    *solids.CASES,
 )
 
 
