@@ -97,6 +97,7 @@ def _vehicle_lines(built: BuiltCase) -> list[str]:
         frequencies = vehicle.frequencies()
         if len(frequencies):
             text += f"; frequencies {', '.join(f'{f:.4g}' for f in frequencies[:6])} Hz"
+        if len(frequencies) and vehicle.is_multibody:  # a mesh has periods that no step resolves, nor need it
             steps = 1.0 / (np.max(frequencies) * built.plan.settings.time_step)
             text += f"; {steps:.4g} steps per shortest period"
         lines.append(text)

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from axlespan.errors import InputError, Place
 
+_SUMMARY = "summary.json"  # comes last, and lists the files of a run
 _STAGE = ".axlespan-"  # beginning of the names of folders in which results wait until they are complete
 
 
@@ -74,10 +75,11 @@ def publish(stage: Path, folder: Path) -> None:
         If they cannot be moved.
     """
     new = [entry.name for entry in stage.iterdir()]
-    stale = [folder / name for name in _earlier(folder) if name not in new]
-    (folder / "summary.json").unlink(missing_ok=True)  # until all is there, no summary speaks for it
-    _remove(stale)
-    for name in sorted(new, key="summary.json".__eq__):
+    if _SUMMARY in new:
+        stale = [folder / name for name in _earlier(folder) if name not in new]
+        (folder / _SUMMARY).unlink(missing_ok=True)  # until all is there, no summary speaks for it
+        _remove(stale)
+    for name in sorted(new, key=_SUMMARY.__eq__):
         target = folder / name
         if target.is_dir() and not target.is_symlink():
             shutil.rmtree(target)
@@ -87,7 +89,7 @@ def publish(stage: Path, folder: Path) -> None:
 def _earlier(folder: Path) -> list[str]:
     """Files of an earlier run in a folder, by its own summary."""
     try:
-        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+        summary = json.loads((folder / _SUMMARY).read_text(encoding="utf-8"))
         names = summary["files"] if summary["format"] == "axlespan summary" else []
     except (OSError, ValueError, KeyError, TypeError):
         return []

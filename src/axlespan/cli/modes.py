@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from axlespan.cli.folder import check_folder
+from axlespan.cli.folder import check_folder, publish, staged
 from axlespan.cli.messages import DONE, FAILED, refuse, say, warn
 from axlespan.errors import AnalysisError, InputError
 from axlespan.io.paraview import write_modes
 from axlespan.io.strict_json import to_json
+from axlespan.irregularity import spectrum_names
 from axlespan.linalg.factor import NotPositiveDefinite
 from axlespan.model.modal import SystemModes, modes_of
 from axlespan.running.structure import Structure
@@ -28,9 +29,10 @@ _PICTURES = 10
 def show_modes(case: Path, number: int | None, output: Path | None, *, force: bool) -> int:
     """Compute the modes of a case's structure, print and write them; the exit code."""
     try:
+        loaded = load_case(case, spectra=spectrum_names())
         if output is not None:
             check_folder(output, force)
-        built = build(load_case(case))
+        built = build(loaded)
         structure = built.crossing.structure
         found = modes_of(structure.system, number)
     except InputError as error:
@@ -38,16 +40,21 @@ def show_modes(case: Path, number: int | None, output: Path | None, *, force: bo
     except (AnalysisError, NotPositiveDefinite) as error:
         warn(f"the analysis failed: {error}")
         return FAILED
+    written: list[str] = []
+    if output is not None:
+        try:
+            with staged(output) as stage:
+                written = _write(structure, found, built.title, stage)
+                publish(stage, output)
+        except InputError as error:
+            return refuse(error)
+        except OSError as error:
+            warn(f"{output}: the results cannot be written: {error.strerror or error}")
+            return FAILED
     for line in modes_table(structure, found, built.title):
         say(line)
-    if output is None:
-        return DONE
-    try:
-        written = _write(structure, found, built.title, output)
-    except OSError as error:
-        warn(f"{output}: the results cannot be written: {error.strerror or error}")
-        return FAILED
-    say(f"Written to {output}: {', '.join(written)}")
+    if output is not None:
+        say(f"Written to {output}: {', '.join(written)}")
     return DONE
 
 

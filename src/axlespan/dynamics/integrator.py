@@ -217,15 +217,21 @@ class Stepper:
         if self._dense is not None:
             width = (n_row - 1) * integrator.size
             self._stacked = self._work[2:].reshape(width, *shape[1:])
+            self._forceless = np.ascontiguousarray(self._dense[:, : width - integrator.size])
 
-    def predict(self) -> None:
-        """Advance under ``force``."""
+    def predict(self, *, forceless: bool = False) -> None:
+        """Advance under ``force``; ``forceless`` says that there is none, whatever stands there."""
         work, integrator = self._work, self.integrator
         np.matmul(self._matrix, self.state.values.reshape(3, -1), out=self._rows)
         if self._dense is not None:
-            np.dot(self._dense, self._stacked, out=self.acceleration)
+            if forceless:
+                np.dot(self._forceless, self._stacked[: self._forceless.shape[1]], out=self.acceleration)
+            else:
+                np.dot(self._dense, self._stacked, out=self.acceleration)
             return
         force = self.force
+        if forceless:
+            force[...] = 0.0
         force -= _product(integrator.K, work[2], self._product)
         if integrator.C is not None:
             force -= _product(integrator.C, work[3], self._product)

@@ -7,6 +7,8 @@ the fleet holds the vehicles of all.
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
@@ -93,6 +95,9 @@ class StructureBody:
 
     def predict(self, external: FloatArray | None, known: FloatArray | None) -> None:
         """Advance under the weighted external force (n,), the contact of the step before and known wheel loads."""
+        if external is None and known is None and not self.integrator.weight_p:
+            self.stepper.predict(forceless=True)
+            return
         force = self.stepper.force
         if external is None:
             force[...] = 0.0
@@ -112,7 +117,7 @@ class StructureBody:
         """Displacements E u (n_wheel,) at the new time as far as known, for rows (n_wheel, n_local)."""
         values = self.stepper.displacement(flat)
         values *= weights
-        return np.asarray(values.dot(np.ones(values.shape[1])))  # quicker than a sum along short rows
+        return np.asarray(values.dot(_ones(values.shape[1])))  # quicker than a sum along short rows
 
     def path_load(self, flat: IntArray, weights: FloatArray, forces: FloatArray) -> FloatArray:
         """Eᵀ X (n_held,) or (n_held, k) of wheels with rows (n_wheel, n_local) and forces (n_wheel,)."""
@@ -216,6 +221,11 @@ class FleetBody:
         self.state.values[...] = values
         self.stepper.hold()
         self.forces = forces
+
+
+@cache
+def _ones(n: int) -> FloatArray:
+    return np.ones(n)
 
 
 def _block_inverse(matrix: sp.csr_array, owner: IntArray) -> sp.csr_array:

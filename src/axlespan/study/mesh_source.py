@@ -13,7 +13,8 @@ from axlespan import units
 from axlespan.errors import InputError
 from axlespan.io.meshes import read_mesh
 from axlespan.model.mesh import Mesh as MeshValue
-from axlespan.study.case_imported import MadeMesh, Mesh
+from axlespan.study.case_imported import Mesh
+from axlespan.study.case_made_mesh import MadeMesh
 from axlespan.study.nodes import under
 
 IntArray = npt.NDArray[np.int64]

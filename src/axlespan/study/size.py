@@ -50,7 +50,7 @@ def size_of(plan: Plan) -> Size:
     start = _START_MATRICES * float(n_contact) ** 2 + 2.0 * coupled * (plan.structure.size + n_vehicle)
     return Size(
         kept_times=settings.steps // settings.every + 1,
-        values=values + len(system.prescribed),
+        values=values + (len(system.prescribed) if settings.reactions else 0),
         fields=len(settings.fields) * field,
         work=8.0 * start,
     )

@@ -36,6 +36,7 @@ _WORDS: Final[dict[str, tuple[str, str]]] = {
         "Indent the list under a key of its own",
     ),
     r"expected <block end>": (_ASTRAY, _ALIKE),
+    r"found '<stream end>'": ("the text ends here, within brackets or braces", "Close them"),
     r"another document": ("a second document (---) begins here", "Write one case in a file"),
     r"expected '<document start>'": (
         "stands behind the end of the case",
