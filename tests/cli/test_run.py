@@ -10,6 +10,7 @@ import pytest
 import xarray as xr
 
 from axlespan.cli.examples import shipped
+from axlespan.errors import AnalysisError
 
 SHORTER = {"solid-beam-coarse": ("steps: 1500", "steps: 200")}
 LONG = {"neves2012-3.2-solid"}  # 14 000 steps of 36 597 d.o.f.
@@ -301,6 +302,19 @@ class TestRunsThatFail:
         assert answer.err.startswith("axlespan: warning: the figures could not be drawn: ")
         assert {p.name for p in (tmp_path / "out").iterdir()} == {"result.nc", "summary.json"}
         assert strict(tmp_path / "out/summary.json")["files"] == ["result.nc", "summary.json"]
+
+    def test_no_modes_of_a_vehicle(self, axlespan, case, tmp_path, monkeypatch):
+        def none(*arguments):
+            raise AnalysisError("Lanczos' method found 2 of 3 modes")
+
+        monkeypatch.setattr("axlespan.vehicles.vehicle.lowest_modes", none)
+        for words in (["check", case()], ["run", case(), "-o", tmp_path / "out"]):
+            assert axlespan(*words) == (
+                3,
+                "",
+                "axlespan: the analysis failed: Lanczos' method found 2 of 3 modes\n",
+            )
+        assert not (tmp_path / "out").exists()
 
     @pytest.mark.parametrize("message", ["", "cannot allocate 2 TB"])
     def test_no_memory_while_it_runs(self, axlespan, case, tmp_path, monkeypatch, message):

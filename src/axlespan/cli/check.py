@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from axlespan.cli.messages import DONE, refuse, say, warn
+from axlespan.cli.messages import DONE, FAILED, refuse, say, warn
 from axlespan.cli.room import check_size
 from axlespan.errors import AxlespanError, InputError
 from axlespan.irregularity import spectrum_names
@@ -27,6 +27,9 @@ def check_case(case: Path) -> int:
         size = check_size(built)
     except InputError as error:
         return refuse(error)
+    except AxlespanError as error:
+        warn(f"the analysis failed: {error}")
+        return FAILED
     for text in built.cautions:
         warn(f"warning: {text}")
     for line in _description(built, size):

@@ -47,9 +47,18 @@ def run_case(case: Path, output: Path | None, *, force: bool, figures: bool, par
             check_size(built, folder)
             for text in built.cautions:
                 warn(f"warning: {text}")
-            return _run(built, stage, folder, Wanted(figures, paraview))
+            code, lines = _run(built, stage, folder, Wanted(figures, paraview))
     except InputError as error:
         return refuse(error)
+    except AxlespanError as error:
+        warn(f"the analysis failed: {error}")
+        return FAILED
+    except KeyboardInterrupt:
+        warn("interrupted; nothing was written")
+        return INTERRUPTED
+    for line in lines:
+        say(line)
+    return code
 
 
 def _folder_of(case: Path) -> Path:
@@ -68,23 +77,18 @@ def _with_fields(built: BuiltCase) -> BuiltCase:
     return replace(built, plan=replace(built.plan, settings=replace(settings, fields=fields)))
 
 
-def _run(built: BuiltCase, stage: Path, folder: Path, wanted: Wanted) -> int:
-    """Compute and write; the exit code."""
+def _run(built: BuiltCase, stage: Path, folder: Path, wanted: Wanted) -> tuple[int, list[str]]:
+    """Compute and write; the exit code, and what is to be said of the result."""
     try:
         result, code = _computed(built)
-        if result is None:
-            return code
-        lines = _written(built, result, stage, folder, wanted)
+        return code, [] if result is None else _written(built, result, stage, folder, wanted)
     except (OSError, MemoryError) as error:
         reason = getattr(error, "strerror", None) or str(error) or _NO_MEMORY
         warn(f"{folder}: the results cannot be written: {reason}")
-        return FAILED
+        return FAILED, []
     except KeyboardInterrupt:
         warn("interrupted while the results were written; they are not kept")
-        return INTERRUPTED
-    for line in lines:
-        say(line)
-    return code
+        return INTERRUPTED, []
 
 
 def _computed(built: BuiltCase) -> tuple[Result | None, int]:

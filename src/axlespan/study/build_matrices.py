@@ -124,13 +124,12 @@ def system_of(
     """
     held = _supported(model, book, supports)
     n, extra = model.n_dof, len(held.springs)
-    stiffness, mass = _padded(model.stiffness, extra), _padded(model.mass, extra)
-    viscous = _padded(sp.csr_array((n, n)) if model.damping is None else model.damping, extra)
-    for i, (row, k, c, _) in enumerate(held.springs):
-        stiffness, viscous = (
-            stiffness + _between(row, n + i, k, n + extra),
-            viscous + _between(row, n + i, c, n + extra),
-        )
+    rows = np.array([row for row, *_ in held.springs], dtype=np.int64)
+    mass = _padded(model.mass, extra)
+    stiffness = _padded(model.stiffness, extra) + _to_ground(rows, [k for _, k, _, _ in held.springs], n)
+    viscous = _to_ground(rows, [c for _, _, c, _ in held.springs], n)
+    if model.damping is not None:
+        viscous = viscous + _padded(model.damping, extra)
     if isinstance(damping, Rayleigh):
         viscous = viscous + damping.alpha * mass + damping.beta * stiffness
     names = (*book.names, *(name for *_, name in held.springs))
@@ -156,9 +155,12 @@ def _padded(matrix: sp.csr_array, extra: int) -> sp.csr_array:
     return sp.csr_array(sp.block_diag([matrix, sp.csr_array((extra, extra))], format="csr"))
 
 
-def _between(row: int, ground: int, value: float, size: int) -> sp.csr_array:
-    at = ([row, ground, row, ground], [row, ground, ground, row])
-    return sp.csr_array(sp.coo_array(([value, value, -value, -value], at), shape=(size, size)))
+def _to_ground(rows: IntArray, values: Sequence[float], n: int) -> sp.csr_array:
+    """Springs from rows (k,) to ground d.o.f. of their own, n, n + 1, …, as a matrix (n + k, n + k)."""
+    ground, value = n + np.arange(len(rows)), np.array(values, dtype=float)
+    at = (np.concatenate([rows, ground, rows, ground]), np.concatenate([rows, ground, ground, rows]))
+    entries = np.concatenate([value, value, -value, -value])
+    return sp.csr_array(sp.coo_array((entries, at), shape=(n + len(rows), n + len(rows))))
 
 
 def _supported(model: MatrixModel, book: RowBook, supports: Sequence[NodeSupport]) -> _Held:
