@@ -27,7 +27,7 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 # A contact force so many times the largest static one means that the run has diverged.
-_DIVERGED = 1e6
+_DIVERGED = 1e4
 
 _QUANTITIES = ("displacement", "velocity", "acceleration")
 
