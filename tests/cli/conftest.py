@@ -1,6 +1,7 @@
 """A small case, and two ways to run a command: in this process, and as a process of its own."""
 
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -55,7 +56,9 @@ def in_process(*words):
 def started(*words, prefix=(), **options):
     """Start a command as a process."""
     environment = os.environ | {"MPLBACKEND": "Agg", "OMP_NUM_THREADS": "1"} | options.pop("env", {})
-    given = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "env": environment} | options
+    # A parent that runs in the background ignores SIGINT, and its children would too.
+    attended = {"preexec_fn": lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)}
+    given = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "env": environment, **attended} | options
     return subprocess.Popen([*prefix, str(COMMAND), *map(str, words)], **given)
 
 
