@@ -268,7 +268,9 @@ def _check_time_step(plan: Plan) -> None:
 
 def _check_reach(plan: Plan) -> None:
     """Some wheel must be on the structure at some time, or the run says nothing about it."""
-    head = plan.crossing.start + plan.crossing.motion.distance(plan.times_of(np.array([0, plan.settings.steps])))
+    head = plan.crossing.start + plan.crossing.motion.distance(
+        plan.times_of(np.array([0, plan.settings.steps]))
+    )
     path = plan.rows.paths[0].free
     first, last = head[0] - plan.rows.offsets.max(), head[1]
     if last < path.start or first > path.stop:
