@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 
@@ -102,10 +102,6 @@ class Outcome:
     code: str
     message: str
     remedy: str = ""
-
-    def with_remedy(self, remedy: str) -> Outcome:
-        """Return the same outcome with another remedy."""
-        return replace(self, remedy=remedy)
 
 
 def _shown(value: Any, limit: int = 60) -> str:

@@ -70,7 +70,8 @@ class StructureBody:
         n = self.integrator.size
         self._shape = (n,) if single else (n, self.lanes)
         # Eᵀ X of the step before, on the d.o.f. that were held then.
-        self._loaded = np.arange(len(path_loads[0]))
+        self._n_dof = len(path_loads[0])
+        self._loaded = np.arange(self._n_dof)
         self._load = path_loads[0].copy() if single else np.stack(path_loads, axis=-1)
 
     @property
@@ -89,7 +90,7 @@ class StructureBody:
 
     def load_of(self, lane: int) -> FloatArray:
         """Eᵀ X (n,) of one crossing at the last completed step."""
-        result = np.zeros(self.integrator.size)
+        result = np.zeros(self._n_dof)
         result[self._loaded] = self._load if self._load.ndim == 1 else self._load[:, lane]
         return result
 
@@ -115,9 +116,7 @@ class StructureBody:
 
     def gather(self, flat: IntArray, held: IntArray, weights: FloatArray) -> FloatArray:
         """Displacements E u (n_wheel,) at the new time as far as known, for rows (n_wheel, n_local)."""
-        values = self.stepper.displacement(flat)
-        values *= weights
-        return np.asarray(values.dot(_ones(values.shape[1])))  # quicker than a sum along short rows
+        return weighted_sums(self.stepper.displacement(flat), weights)
 
     def path_load(self, flat: IntArray, weights: FloatArray, forces: FloatArray) -> FloatArray:
         """Eᵀ X (n_held,) or (n_held, k) of wheels with rows (n_wheel, n_local) and forces (n_wheel,)."""
@@ -226,6 +225,12 @@ class FleetBody:
 @cache
 def _ones(n: int) -> FloatArray:
     return np.ones(n)
+
+
+def weighted_sums(values: FloatArray, weights: FloatArray) -> FloatArray:
+    """Sums (n_wheel,) of values times weights (n_wheel, n_local); the values are overwritten."""
+    values *= weights
+    return np.asarray(values.dot(_ones(values.shape[1])))  # quicker than a sum along short rows
 
 
 def _block_inverse(matrix: sp.csr_array, owner: IntArray) -> sp.csr_array:

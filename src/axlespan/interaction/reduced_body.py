@@ -13,7 +13,7 @@ import scipy.sparse as sp
 from axlespan.dynamics.alpha import Alpha
 from axlespan.dynamics.integrator import Integrator, Matrices, State
 from axlespan.dynamics.reduction import ReducedBasis
-from axlespan.interaction.bodies import PreparedStructure, StructureBody
+from axlespan.interaction.bodies import PreparedStructure, StructureBody, weighted_sums
 from axlespan.interaction.path_columns import PathColumns
 from axlespan.linalg.low_rank import LowRank
 
@@ -86,10 +86,8 @@ class ReducedStructureBody(StructureBody):
 
     def __init__(self, prepared: PreparedReduced, states: list[State], path_loads: list[FloatArray]) -> None:
         self._basis = prepared.basis
-        self._n = prepared.basis.vectors.shape[0]
         super().__init__(prepared, states, path_loads)
         self._held: IntArray | None = None
-        self._loaded_shapes = self._basis.vectors
 
     def _shapes(self) -> FloatArray:
         """V at the held d.o.f. (n_held, m)."""
@@ -102,12 +100,6 @@ class ReducedStructureBody(StructureBody):
         """The state of one crossing in all d.o.f."""
         return State(self.lane(lane).values @ self._basis.vectors.T)
 
-    def load_of(self, lane: int) -> FloatArray:
-        """Eᵀ X (n,) of one crossing at the last completed step."""
-        result = np.zeros(self._n)
-        result[self._loaded] = self._load if self._load.ndim == 1 else self._load[:, lane]
-        return result
-
     def _add_loads(self, force: FloatArray, known: FloatArray | None) -> None:
         if self.integrator.weight_p:
             force -= self._basis.vectors[self._loaded].T @ (self.integrator.weight_p * self._load)
@@ -118,9 +110,7 @@ class ReducedStructureBody(StructureBody):
         """Displacements E V q (n_wheel,) at the new time as far as known."""
         everywhere = np.arange(self.stepper.acceleration.size).reshape(self.stepper.acceleration.shape)
         line = self._shapes() @ self.stepper.displacement(everywhere)
-        values = line.take(held)
-        values *= weights
-        return np.asarray(values.dot(np.ones(values.shape[1])))
+        return weighted_sums(line.take(held), weights)
 
     def _response(self, load: FloatArray) -> FloatArray:
         force = -self.integrator.weight_c * (self._shapes().T @ load)
