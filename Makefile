@@ -28,6 +28,9 @@ verify: $(VENV)/.ready
 bench: $(VENV)/.ready-dev
 	$(BIN)/python -m benchmarks
 
+docs: $(VENV)/.ready-dev
+	$(BIN)/sphinx-build -W --keep-going -q -b html docs docs/_build/html
+
 $(VENV)/.ready: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[all]'
