@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from axlespan.contact.motion import SpeedHistory
+from axlespan.contact.motion import Course, SpeedHistory
 from axlespan.errors import InputError
 
 HISTORY = SpeedHistory.through([[0.5, 20.0], [2.0, 26.0], [2.75, 26.0], [6.0, 0.0], [8.0, 4.0]])
@@ -74,3 +74,63 @@ def test_errors(points, rule):
 def test_constant_errors(speed):
     with pytest.raises(InputError, match="must be zero or positive"):
         SpeedHistory.constant(speed)
+
+
+# --- accelerations -----------------------------------------------------------------------------------
+
+
+def test_accelerating_until_a_speed():
+    """s = v t + a t²/2 until (v₁ - v)/a, then v₁."""
+    history = SpeedHistory.accelerating(10.0, 0.5, 20.0)
+    t = np.array([-1.0, 0.0, 8.0, 20.0, 30.0])
+    np.testing.assert_allclose(history.distance(t), [-10.0, 0.0, 96.0, 300.0, 500.0])
+    np.testing.assert_allclose(history.speed(t), [10.0, 10.0, 14.0, 20.0, 20.0])
+    np.testing.assert_allclose(history.acceleration(t), [0.0, 0.5, 0.5, 0.0, 0.0])
+
+
+def test_accelerating_without_end():
+    history = SpeedHistory.accelerating(10.0, 2.0)
+    t = np.array([-3.0, 0.0, 5.0, 50.0])
+    np.testing.assert_allclose(history.distance(t), [-30.0, 0.0, 75.0, 3000.0])
+    np.testing.assert_allclose(history.speed(t), [10.0, 10.0, 20.0, 110.0])
+    np.testing.assert_allclose(history.acceleration(t), [0.0, 2.0, 2.0, 2.0])
+    assert (history.largest(5.0), SpeedHistory.constant(3.0).largest(9.0)) == (20.0, 3.0)
+
+
+def test_braking_ends_where_the_train_stands():
+    """v² / 2b, reached at v / b, and no step further."""
+    history = SpeedHistory.accelerating(30.0, -1.2)
+    stop = 30.0**2 / 2.4
+    np.testing.assert_allclose(history.distance(np.array([25.0, 26.0, 1e4])), stop, rtol=1e-14)
+    np.testing.assert_array_equal(history.speed(np.array([25.0, 1e4])), 0.0)
+    assert history.largest(100.0) == 30.0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "rule"),
+    [
+        ((10.0, 0.0), r"acceleration = 0\.0: must be finite and not zero"),
+        ((10.0, float("nan")), "acceleration = nan: must be finite"),
+        ((10.0, 0.5, 5.0), r"to_speed = 5\.0: must be more than the speed that the train has, 10 m/s"),
+        ((10.0, -0.5, 15.0), r"to_speed = 15\.0: must be less"),
+        ((10.0, -0.5, -1.0), r"to_speed = -1\.0: must be zero or positive"),
+        ((-10.0, 0.5), r"speed = -10\.0: must be zero or positive"),
+    ],
+)
+def test_accelerations_that_are_wrong(arguments, rule):
+    with pytest.raises(InputError, match=rule):
+        SpeedHistory.accelerating(*arguments)
+
+
+@pytest.mark.parametrize("direction", [1, -1])
+def test_a_course_has_a_direction_and_a_delay(direction):
+    course = Course(HISTORY, start=7.0, direction=direction, delay=1.5)
+    t = np.array([0.0, 1.5, 2.4, 5.0, 30.0])
+    np.testing.assert_allclose(course.head(t), 7.0 + direction * HISTORY.distance(t - 1.5))
+    assert course.head(np.array(1.5)) == 7.0
+    assert course.head(np.array(0.0)) == 7.0 - direction * 30.0  # at its first speed until then
+    h = 1e-6
+    slope = (course.head(t + h) - course.head(t - h)) / (2.0 * h)
+    np.testing.assert_allclose(course.velocity(t), slope, atol=1e-5)
+    np.testing.assert_allclose(course.acceleration(t), direction * HISTORY.acceleration(t - 1.5))
+    assert course.largest_speed(4.0) == 26.0

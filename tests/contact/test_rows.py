@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from axlespan.contact.motion import SpeedHistory
-from axlespan.contact.rows import TrainRows, WheelPath
+from axlespan.contact.motion import Course, SpeedHistory
+from axlespan.contact.rows import TrainRows, WheelPath, Wheels
 from axlespan.irregularity import Harmonic, Smooth
 from axlespan.running.path import PolynomialPath
 
@@ -18,9 +18,7 @@ SHORT = PolynomialPath(
 )
 WAVE = Harmonic(amplitude=2e-3, wavelength=3.0)
 ROWS = TrainRows(
-    SpeedHistory.through([[0.0, 2.0], [1.0, 4.0]]),
-    start=0.5,
-    offsets=np.array([0.0, 1.0, 1.0, 6.0]),
+    (Wheels(Course(SpeedHistory.through([[0.0, 2.0], [1.0, 4.0]]), 0.5), np.array([0.0, 1.0, 1.0, 6.0])),),
     paths=(
         # Free d.o.f. 0, 2 → 0, 1 on the long line; its d.o.f. 1 is prescribed number 0.
         WheelPath(

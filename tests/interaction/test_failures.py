@@ -167,8 +167,8 @@ class TestVehicles:
             run(Crossing(BRIDGE, Train.of(vehicle), speed=30.0))
 
     def test_loads(self):
-        vehicle = self.wagon(lambda m: m.with_support("wall", ["z"]).with_load("body", "z", -10.0))
-        with pytest.raises(InputError, match="'wagon': has loads, which are not supported in vehicles"):
+        vehicle = self.wagon(lambda m: m.with_support("wall", ["z"]).with_load("body", "z", -10.0, np.sin))
+        with pytest.raises(InputError, match="'wagon': has loads that change in time, which are not supported"):
             run(Crossing(BRIDGE, Train.of(vehicle), speed=30.0))
 
     def test_supports_that_move(self):

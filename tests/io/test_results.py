@@ -13,7 +13,7 @@ import pytest
 import xarray
 
 from axlespan.errors import InputError, Outcome
-from axlespan.interaction.extras import SECTION_VARIABLES
+from axlespan.interaction.extras import LINE_VARIABLES, SECTION_VARIABLES
 from axlespan.interaction.result import VARIABLES, Result
 from axlespan.io.results import FORMAT_VERSION, read_header, read_result, write_result
 
@@ -336,6 +336,9 @@ def test_what_xarray_wrote_again_is_still_a_result(tmp_path):
     assert read_header(tmp_path / "b.nc").case_text == "title: x"
 
 
+LINE = (*LINE_VARIABLES, "line_position", "line_end")
+
+
 def test_the_file_layout_knows_every_history_of_a_result():
     fields = {name for name, kind in Result.__annotations__.items() if kind == "FloatArray"}
-    assert fields == {"time", *VARIABLES, *SECTION_VARIABLES}  # these are in axlespan.io.result_extras
+    assert fields == {"time", *VARIABLES, *SECTION_VARIABLES, *LINE}  # these are in axlespan.io.result_extras

@@ -293,7 +293,7 @@ def test_moving_forces_are_constant():
 def test_speed_histories_show_both_ends():
     crossing = Crossing(bridge(), Train.of(mass()), speed_history=[[0.0, 10.0], [1.0, 20.0]])
     result = simulate(crossing, time_step=5e-3, steps=100, method=Alpha(0.0))
-    assert "  speed        from 36 to 72 km/h" in text_of(result, crossing).splitlines()
+    assert "  speed        from 36 to 54 km/h" in text_of(result, crossing).splitlines()
 
 
 def test_the_summary_is_strict_json_that_a_stored_result_gives_again(tmp_path, example):

@@ -5,7 +5,14 @@ import pytest
 import scipy.sparse as sp
 
 from axlespan.linalg.arrays import symmetric_csr
-from axlespan.linalg.band_kernel import compiled_solver, substitute
+from axlespan.linalg.band_kernel import (
+    compiled_single,
+    compiled_solver,
+    padded_width,
+    scaled_rows,
+    single,
+    substitute,
+)
 from axlespan.linalg.banded import BandedFactor, BandOrder
 
 
@@ -58,6 +65,27 @@ def test_substitution_as_written_solves(band, n, half, columns):
         x = b.copy()
         solver(lower, rows, x)
         np.testing.assert_allclose(x, expected, rtol=1e-9, atol=1e-12 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize(("n", "half"), [(20, 0), (40, 3), (60, 8), (70, 9)])
+def test_a_single_right_hand_side_as_written(n, half):
+    rng = np.random.default_rng(5)
+    L = np.tril(rng.uniform(-1, 1, (n, n)), -1) + np.diag(rng.uniform(1, 2, n))
+    L[np.subtract.outer(np.arange(n), np.arange(n)) > half] = 0.0
+    lower = np.zeros((n, half + 1))
+    for d in range(half + 1):
+        lower[: n - d, d] = np.diagonal(L, -d)
+    width = padded_width(half)
+    scaled, rows, b = scaled_rows(lower, width), rng.permutation(n), rng.standard_normal(n)
+    expected = np.empty(n)
+    expected[rows] = np.linalg.solve(L.T, np.linalg.solve(L, b[rows]))
+    for solver in (single(width), compiled_single(width) or single(width)):
+        x = np.empty(n)
+        solver(*scaled, rows, b, x, np.zeros(n + 2 * width))
+        np.testing.assert_allclose(x, expected, rtol=1e-9, atol=1e-12 * np.abs(expected).max())
+        in_place = b.copy()
+        solver(*scaled, rows, in_place, in_place, np.zeros(n + 2 * width))
+        assert np.array_equal(in_place, x)
 
 
 def test_solves_alike_without_numba(band, monkeypatch):

@@ -35,7 +35,7 @@ def test_the_example_of_neves_in_si_units():
     assert (beam.mass_per_length, beam.elements, beam.damping, beam.supports) == (2303.0, 50, None, None)
     assert (train.mass, train.stiffness, train.damping, train.unsprung_mass) == (5750.0, 1.595e6, 0.0, 0.0)
     assert (train.count, train.spacing) == (50, 3.0)
-    assert (case.crossing.speed, case.crossing.start) == (13.25, 0.0)
+    assert (case.crossing.speed, case.crossing.start) == (13.25, None)
     assert (wave.amplitude, wave.wavelength, wave.phase, wave.from_, wave.to) == (5e-4, 5.0, 0.0, 0.0, 25.0)
     analysis = case.analysis
     assert (analysis.time_step, analysis.step_count) == (1e-3, 14000)

@@ -115,7 +115,9 @@ def test_descriptions_name_the_units():
 
 def test_the_fixed_names_are_there():
     described = schema()
-    assert list(described["properties"]) == ["title", "structure", "train", "crossing", "analysis", "output"]
+    assert list(described["properties"]) == [
+        *("title", "structure", "train", "crossing", "other_trains", "analysis", "output", "assessment")
+    ]
     parts = described["$defs"]
     assert {"time_step", "steps", "alpha", "beta", "gamma", "method", "basis", "contact"} <= set(
         parts["Analysis"]["properties"]
@@ -126,6 +128,7 @@ def test_the_fixed_names_are_there():
         "compare",
         "every",
         "reactions",
+        "line",
         "fields",
         "section_forces",
         "stresses",

@@ -3,7 +3,7 @@
 import pytest
 
 from axlespan.errors import InputError
-from axlespan.study.case_train import first_wheels
+from axlespan.study.case_train import Unit, first_wheels
 
 CAR = """\
   - vehicle: multibody
@@ -115,14 +115,14 @@ MASS = "vehicle: rigid-mass, mass: 5 t"
 )
 def test_where_vehicles_stand(with_train, entries, expected):
     train = with_train("".join(f"  - {entry}\n" for entry in entries)).case.train
-    wheelbases = [entry.wheel_positions[-1] for entry in train]
-    heads = first_wheels(train, wheelbases, [None] * len(train))
+    heads = first_wheels(train, [Unit(entry.wheel_positions[-1], entry.count) for entry in train])
     assert [pytest.approx(entry) for entry in expected] == list(heads)
 
 
 def test_the_library_knows_spacings(with_train):
     loaded = with_train("  - {vehicle: ice3, count: 2}\n  - {vehicle: ice3}\n", vehicles=["ice3", "hslm-a1"])
-    assert first_wheels(loaded.case.train, [19.875, 19.875], [24.775, 24.775]) == ((0.0, 24.775), (49.55,))
+    units = [Unit(19.875, 2, 24.775), Unit(19.875, 1, 24.775)]
+    assert first_wheels(loaded.case.train, units) == ((0.0, 24.775), (49.55,))
 
 
 @pytest.mark.parametrize(

@@ -51,16 +51,70 @@ def run(
         bool,
         typer.Option("--paraview", help="Write fields.pvd: structure and wheels over time, for ParaView."),
     ] = False,
+    report: Annotated[
+        bool, typer.Option("--report", help="Write report.html: the result as one page, with an animation.")
+    ] = False,
 ) -> None:
     """Simulate a case: writes result.nc, summary.json and figures."""
-    from axlespan.cli.run import run_case
+    from axlespan.cli.run import Wanted, run_case
 
-    raise typer.Exit(run_case(case, output, force=force, figures=figures, paraview=paraview))
+    raise typer.Exit(run_case(case, output, force=force, wanted=Wanted(figures, paraview, report)))
+
+
+@app.command()
+def report(
+    folder: Annotated[
+        Path, typer.Argument(help="Folder of results, or a result.nc.", metavar="FOLDER")
+    ],
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", help="The page; report.html in the folder by default."),
+    ] = None,
+) -> None:
+    """Write a result as one HTML page.
+
+    It needs no server: tables, plots with zoom, maps and an animation of the crossing are in the file.
+    """
+    from axlespan.cli.report import make_report
+
+    raise typer.Exit(make_report(folder, output))
+
+
+@app.command()
+def sweep(
+    study: Annotated[Path, typer.Argument(help="Study file (YAML).", metavar="STUDY")],
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", help="Folder of the store; STUDY without its ending by default."),
+    ] = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Compute what is missing in a store of this study.")
+    ] = False,
+    workers: Annotated[
+        int, typer.Option("--workers", min=1, help="Processes on this machine, each on one core.")
+    ] = 1,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(
+            "--scheduler",
+            help="Dask scheduler, tcp://host:8786; local starts a Dask cluster of --workers here.",
+        ),
+    ] = None,
+    yes: Annotated[bool, typer.Option("--yes", help="Begin a very large study without asking.")] = False,
+    only: Annotated[
+        int | None, typer.Option("--only", help="Compute one scenario, with all its histories.", metavar="ID")
+    ] = None,
+    figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw figures.")] = True,
+) -> None:
+    """Simulate all scenarios of a study: writes a table, histories and figures."""
+    from axlespan.cli.sweep import Wanted, run_sweep
+
+    raise typer.Exit(run_sweep(study, output, Wanted(resume, workers, scheduler, yes, figures, only)))
 
 
 @app.command()
 def check(case: _CASE) -> None:
-    """Read and build a case without running it, and say what it is."""
+    """Read and build a case or a study without running it, and say what it is."""
     from axlespan.cli.check import check_case
 
     raise typer.Exit(check_case(case))
@@ -105,6 +159,26 @@ def examples(
 
 
 @app.command()
+def library(
+    name: Annotated[
+        str | None,
+        typer.Argument(help="Name of an entry, or a vehicle's file of your own; none lists all.", metavar="NAME"),
+    ] = None,
+    copy: Annotated[
+        Path | None, typer.Option("--copy", help="Write the vehicle's YAML to this file, to change it.")
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
+) -> None:
+    """List vehicles, trains, spectra and tracks, or show one.
+
+    With all its numbers, their sources, axle loads and natural frequencies.
+    """
+    from axlespan.cli.library import show_library
+
+    raise typer.Exit(show_library(name, copy, force=force))
+
+
+@app.command()
 def schema() -> None:
     """Print the JSON Schema of the case file."""
     from axlespan.cli.schema import print_schema
@@ -126,3 +200,11 @@ def verify(
     from axlespan.cli.verify import run_book
 
     raise typer.Exit(run_book(full=full, only=only))
+
+
+@app.command()
+def doctor() -> None:
+    """Say what is installed, which solver would be used, and how fast this machine is."""
+    from axlespan.cli.doctor import look
+
+    raise typer.Exit(look())

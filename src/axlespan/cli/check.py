@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import shlex
+from itertools import groupby
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 from axlespan.cli.messages import DONE, FAILED, refuse, say, warn
 from axlespan.cli.room import check_size
@@ -17,11 +19,20 @@ from axlespan.model.system import System
 from axlespan.study.build import WARNING, BuiltCase, build
 from axlespan.study.loader import load_case
 from axlespan.study.size import Size, size_text
+from axlespan.study.sweep.spec import is_study_file
 from axlespan.vehicles import Vehicle
 
 
+# Wheel loads that are written one by one.
+_MANY = 8
+
+
 def check_case(case: Path) -> int:
-    """Read, build and describe a case; the exit code."""
+    """Read, build and describe a case or a study; the exit code."""
+    if is_study_file(case):
+        from axlespan.cli.sweep import check_study
+
+        return check_study(case)
     try:
         built = build(load_case(case, spectra=spectrum_names()))
         size = check_size(built)
@@ -39,19 +50,16 @@ def check_case(case: Path) -> int:
 
 
 def _description(built: BuiltCase, size: Size) -> list[str]:
-    plan, structure, train = built.plan, built.crossing.structure, built.crossing.train
+    plan, structure = built.plan, built.crossing.structure
     settings, system = plan.settings, structure.system
     ends = plan.times_of(np.array([0, settings.steps]))
-    head = plan.crossing.start + plan.crossing.motion.distance(ends)
     lines = [
         built.title,
         f"  structure   {structure.name}, {structure.length:g} m, {plan.structure.size} free d.o.f., "
         f"{_mass(system)}{_frequencies(built)}",
         *(f"  {fact}" for fact in built.facts),
-        f"  train       {train.name}, {_counted(len(train.placements), 'vehicle')}, {_counted(plan.rows.n_contact, 'wheel')}, "
-        f"{train.wheelbase:g} m from first wheel to last",
+        *_train_lines(built, ends),
         *_vehicle_lines(built),
-        f"  crossing    the first wheel runs from {head[0]:g} to {head[1]:g} m",
         f"  analysis    {settings.steps} steps of {settings.time_step:g} s, alpha = {settings.method.alpha:g}, "
         f"{settings.coupling} method",
         f"  solver      {_solver(built)}",
@@ -59,6 +67,21 @@ def _description(built: BuiltCase, size: Size) -> list[str]:
         f"run about {size_text(size.memory)}",
     ]
     return [*lines, *(f"  note        {note}" for note in settings.notes if not note.startswith(WARNING))]
+
+
+def _train_lines(built: BuiltCase, ends: npt.NDArray[np.float64]) -> list[str]:
+    """Each train, and where it runs."""
+    lines = []
+    for run in built.crossing.runs:
+        train, head = run.train, run.course.head(ends)
+        lines.append(
+            f"  train       {train.name}, {_counted(len(train.placements), 'vehicle')}, "
+            f"{_counted(len(run.lines), 'wheel')}, {train.wheelbase:g} m from first wheel to last"
+        )
+        last = head[1] - run.course.direction * train.wheelbase
+        behind = f", the last one to {last:g} m" if train.wheelbase else ""
+        lines.append(f"  crossing    the first wheel runs from {head[0]:g} to {head[1]:g} m{behind}")
+    return lines
 
 
 def _frequencies(built: BuiltCase) -> str:
@@ -91,12 +114,21 @@ def _counted(number: int, what: str) -> str:
     return f"{number} {what}" if number == 1 else f"{number} {what}s"
 
 
+def _listed(loads: npt.NDArray[np.float64]) -> str:
+    """Loads one by one, or in runs of equal ones where they are many."""
+    words = [f"{load:.5g}" for load in loads]
+    if len(words) <= _MANY:
+        return ", ".join(words)
+    runs = [(word, len(list(same))) for word, same in groupby(words)]
+    return ", ".join(f"{count} × {word}" if count > 1 else word for word, count in runs)
+
+
 def _vehicle_lines(built: BuiltCase) -> list[str]:
-    kinds: dict[int, Vehicle] = {id(item.vehicle): item.vehicle for item in built.crossing.train.placements}
+    kinds: dict[int, Vehicle] = {id(item.vehicle): item.vehicle for item in built.crossing.placements}
     lines = []
     for vehicle in kinds.values():
         loads = vehicle.static_forces(built.crossing.gravity) / 1e3
-        text = f"  vehicle     {vehicle.name}: static wheel loads {', '.join(f'{load:.5g}' for load in loads)} kN"
+        text = f"  vehicle     {vehicle.name}: static wheel loads {_listed(loads)} kN"
         frequencies = vehicle.frequencies()
         if len(frequencies):
             text += f"; frequencies {', '.join(f'{f:.4g}' for f in frequencies[:6])} Hz"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from axlespan.cli.folder import check_folder, publish, staged
 from axlespan.cli.messages import DONE, FAILED, INTERRUPTED, refuse, say, warn
@@ -13,10 +14,12 @@ from axlespan.cli.room import check_size
 from axlespan.errors import AnalysisError, AxlespanError, InputError
 from axlespan.interaction.result import Result
 from axlespan.interaction.simulate import run_plan
+from axlespan.io.drawing import drawing_of
 from axlespan.io.paraview import require_model, write_paraview
 from axlespan.io.results import write_result
 from axlespan.io.summary import summary, summary_lines, write_summary
 from axlespan.irregularity import spectrum_names
+from axlespan.standards import assess
 from axlespan.study.build import BuiltCase, build
 from axlespan.study.loader import load_case
 
@@ -32,22 +35,23 @@ class Wanted:
 
     figures: bool = True
     paraview: bool = False
+    report: bool = False
 
 
-def run_case(case: Path, output: Path | None, *, force: bool, figures: bool, paraview: bool = False) -> int:
+def run_case(case: Path, output: Path | None, *, force: bool, wanted: Wanted) -> int:
     """Run a case; the exit code."""
     try:
         loaded = load_case(case, spectra=spectrum_names())
         folder = output or _folder_of(case)
         check_folder(folder, force)
         built = build(loaded)
-        if paraview:
+        if wanted.paraview:
             built = _with_fields(built)
         with staged(folder) as stage:
             check_size(built, folder)
             for text in built.cautions:
                 warn(f"warning: {text}")
-            code, lines = _run(built, stage, folder, Wanted(figures, paraview))
+            code, lines = _run(built, stage, folder, wanted)
     except InputError as error:
         return refuse(error)
     except AxlespanError as error:
@@ -110,16 +114,41 @@ def _computed(built: BuiltCase) -> tuple[Result | None, int]:
 
 def _written(built: BuiltCase, result: Result, stage: Path, folder: Path, wanted: Wanted) -> list[str]:
     """Write all files, then move them to their folder; what is to be said of the result."""
-    write_result(result, stage / "result.nc", case_text=built.loaded.source.text)
+    drawing = drawing_of(built.crossing, result)
+    write_result(result, stage / "result.nc", case_text=built.loaded.source.text, drawing=drawing)
     files = ["result.nc", "summary.json"]
     if wanted.figures:
         files += _draw(built, result, stage)
     if wanted.paraview and result.fields is not None:
         files += write_paraview(result, built.crossing, stage)[:1]
-    facts = summary(result, built.crossing, title=built.title, files=files)
+    verdicts = _assessed(built, result)
+    if wanted.report:
+        files.append("report.html")
+    facts = summary(result, built.crossing, title=built.title, files=files, verdicts=verdicts)
     write_summary(facts, stage / "summary.json")
+    if wanted.report:
+        _report(stage)
     publish(stage, folder)
     return [*summary_lines(facts), f"Written to {folder}"]
+
+
+def _report(folder: Path) -> None:
+    """Write the page of the result that a folder holds; the result is worth keeping without it."""
+    from axlespan.report import write_report
+
+    try:
+        write_report(folder)
+    except Exception as error:  # as with figures
+        words = " ".join((str(error) or type(error).__name__).split())[:200]
+        warn(f"warning: the report could not be written: {words}")
+
+
+def _assessed(built: BuiltCase, result: Result) -> list[dict[str, Any]]:
+    """Verdicts by the rules that the case asks for; a run that failed is not assessed."""
+    asked = built.loaded.case.assessment
+    if asked is None or result.outcome.code != "completed":
+        return []
+    return [verdict.as_dict() for verdict in assess(result, built.crossing, asked.wanted())]
 
 
 def _draw(built: BuiltCase, result: Result, folder: Path) -> list[str]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from axlespan.contact.motion import SpeedHistory
+from axlespan.contact.motion import Course
 from axlespan.irregularity.profile import Profile
 from axlespan.running.path import PolynomialPath
 
@@ -37,23 +37,41 @@ class RowBlock:
 
 
 @dataclass(frozen=True, eq=False)
-class TrainRows:
-    """The contact rows of one train on its way over a structure."""
+class Wheels:
+    """The wheels of one train: consecutive contacts that move as one."""
 
-    motion: SpeedHistory
-    start: float  # position of the head at time zero [m]
-    offsets: FloatArray  # (n_contact,) distances behind the head [m]
+    course: Course
+    offsets: FloatArray  # (n_wheel,) distances behind the head [m]
+
+    def positions(self, time: FloatArray) -> FloatArray:
+        """Positions (n_time, n_wheel) along the line [m]."""
+        head = self.course.head(time)
+        return np.asarray(head[:, None] - self.course.direction * self.offsets[None, :])
+
+
+@dataclass(frozen=True, eq=False)
+class TrainRows:
+    """The contact rows of all trains of a crossing on their ways over a structure."""
+
+    trains: Sequence[Wheels]  # their contacts are numbered on
     paths: Sequence[WheelPath]
 
     @property
     def n_contact(self) -> int:
         """Number of contacts."""
-        return len(self.offsets)
+        return sum(len(train.offsets) for train in self.trains)
 
     def positions(self, time: FloatArray) -> FloatArray:
-        """Positions (n_time, n_contact) of the wheels along the line [m]."""
-        head = self.start + self.motion.distance(time)
-        return np.asarray(head[:, None] - self.offsets[None, :])
+        """Positions (n_time, n_contact) of the wheels along their lines [m]."""
+        return np.concatenate([train.positions(time) for train in self.trains], axis=1)
+
+    def motion(self, time: float) -> tuple[FloatArray, FloatArray]:
+        """Velocities (n_contact,) [m/s] and accelerations [m/s^2] of the wheels along their lines."""
+        now = np.array([time])
+        sizes = [len(train.offsets) for train in self.trains]
+        velocity = [train.course.velocity(now)[0] for train in self.trains]
+        acceleration = [train.course.acceleration(now)[0] for train in self.trains]
+        return np.repeat(velocity, sizes), np.repeat(acceleration, sizes)
 
     def on_structure(self, positions: FloatArray) -> npt.NDArray[np.bool_]:
         """Which wheels (n_time, n_contact) touch the structure, their footprints included."""

@@ -20,6 +20,8 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from axlespan.dynamics.alpha import Alpha
+from axlespan.dynamics.step_kernel import compiled_completion, compiled_right_side
+from axlespan.linalg.compiled import Loop
 from axlespan.linalg.factor import Factor, factorize
 from axlespan.linalg.low_rank import LowRank, UpdatedFactor
 
@@ -204,47 +206,88 @@ class Stepper:
     def __init__(self, integrator: Integrator, state: State) -> None:
         self.integrator, self.state = integrator, state
         shape = state.values.shape[1:]
-        n_row = 4 if integrator.has_damping else 3
-        # Rows: ũ, ṽ, (1+α) ũ - α u, (1+α) ṽ - α u̇ where there is damping, force.
+        # Rows: (1+α) ũ - α u, (1+α) ṽ - α u̇ where there is damping, force.
+        n_row = 2 if integrator.has_damping else 1
         self._work = np.zeros((n_row + 1, *shape))
         self._rows = self._work[:n_row].reshape(n_row, -1)
-        self._matrix = np.ascontiguousarray(integrator.prediction[:n_row])
-        self._update = np.array([integrator.u_from_a, integrator.v_from_a]).reshape(2, *(1 for _ in shape))
+        self._means = np.ascontiguousarray(integrator.prediction[2 : 2 + n_row])
+        self._advance = np.array(
+            [
+                [*integrator.prediction[0], integrator.u_from_a],
+                [*integrator.prediction[1], integrator.v_from_a],
+            ]
+        )
+        self._ahead = np.empty((2, state.values[0].size))
         self.force = self._work[n_row]  # (1+α) F^c - α F^p of the next prediction [N]; used up by it
         self.acceleration = np.zeros(shape)  # of the new time, as far as it is known
+        self._done = True  # whether the state is that of the acceleration
         self._product = np.empty(shape)
         self._dense = integrator.dense
+        self._right_side: Loop | None = None
+        self._complete: Loop | None = None
         if self._dense is not None:
-            width = (n_row - 1) * integrator.size
-            self._stacked = self._work[2:].reshape(width, *shape[1:])
+            width = (n_row + 1) * integrator.size
+            self._stacked = self._work.reshape(width, *shape[1:])
             self._forceless = np.ascontiguousarray(self._dense[:, : width - integrator.size])
+        else:
+            self._right_side = compiled_right_side(len(shape) == 1 or shape[1] == 1)
+            self._complete = compiled_completion()
+            m = integrator.matrices
+            self._sparse = [_parts(m.K, m.size), _parts(m.C, m.size)]
 
     def predict(self, *, forceless: bool = False) -> None:
         """Advance under ``force``; ``forceless`` says that there is none, whatever stands there."""
-        work, integrator = self._work, self.integrator
-        np.matmul(self._matrix, self.state.values.reshape(3, -1), out=self._rows)
-        if self._dense is not None:
-            if forceless:
-                np.dot(self._forceless, self._stacked[: self._forceless.shape[1]], out=self.acceleration)
-            else:
-                np.dot(self._dense, self._stacked, out=self.acceleration)
-            return
-        force = self.force
+        self._done = False
+        integrator, values = self.integrator, self.state.values
+        if self._right_side is not None:
+            n, damped = integrator.size, integrator.has_damping
+            work, state = self._work.reshape(len(self._work), n, -1), values.reshape(3, n, -1)
+            self._right_side(integrator.prediction, state, *self._sparse, damped, not forceless, work)
+        else:
+            np.matmul(self._means, values.reshape(3, -1), out=self._rows)
+            if self._dense is not None:
+                if forceless:
+                    np.dot(
+                        self._forceless, self._stacked[: self._forceless.shape[1]], out=self.acceleration
+                    )
+                else:
+                    np.dot(self._dense, self._stacked, out=self.acceleration)
+                return
+            self._numpy_right_side(forceless)
+        if integrator.matrices.C_low_rank is not None:
+            self.force -= integrator.matrices.C_low_rank.apply(self._work[1])
+        integrator.factor.solve(self.force, out=self.acceleration)
+
+    def _numpy_right_side(self, forceless: bool) -> None:
+        force, integrator = self.force, self.integrator
         if forceless:
             force[...] = 0.0
-        force -= _product(integrator.K, work[2], self._product)
+        force -= _product(integrator.K, self._work[0], self._product)
         if integrator.C is not None:
-            force -= _product(integrator.C, work[3], self._product)
-        if integrator.matrices.C_low_rank is not None:
-            force -= integrator.matrices.C_low_rank.apply(work[3])
-        integrator.factor.solve(force, out=self.acceleration)
+            force -= _product(integrator.C, self._work[1], self._product)
 
     def displacement(self, where: npt.NDArray[np.int64]) -> FloatArray:
         """Displacements at flat positions (any shape) at the new time, as far as it is known."""
-        result = self.acceleration.take(where)
-        result *= self.integrator.u_from_a
-        result += self._work[0].take(where)
+        values = self.state.values.reshape(3, -1)
+        if self._done:
+            return values[0].take(where)
+        _, dt, late, new = self._advance[0].tolist()
+        result = values[1].take(where)
+        result *= dt
+        result += late * values[2].take(where)
+        result += values[0].take(where)
+        result += new * self.acceleration.take(where)
         return result
+
+    def velocity(self, where: npt.NDArray[np.int64]) -> FloatArray:
+        """Velocities at flat positions (any shape) at the new time, as far as they are known."""
+        values = self.state.values.reshape(3, -1)
+        if self._done:
+            return values[1].take(where)
+        late, new = self._advance[1, 2:].tolist()
+        return np.asarray(
+            values[1].take(where) + late * values[2].take(where) + new * self.acceleration.take(where)
+        )
 
     def add(self, acceleration: FloatArray) -> None:
         """Add the acceleration that contact forces bring."""
@@ -253,14 +296,22 @@ class Stepper:
     def hold(self) -> None:
         """Take the state as it is for the new time: displacements read it as if just computed."""
         self.acceleration[...] = self.state.a
-        self._work[0] = self.state.u - self.integrator.u_from_a * self.state.a
+        self._done = True
 
     def finish(self) -> None:
         """Complete the state at the new time."""
-        values = self.state.values
-        np.multiply(self._update, self.acceleration, out=values[:2])
-        values[:2] += self._work[:2]
-        values[2] = self.acceleration
+        self._done = True
+        values, integrator = self.state.values.reshape(3, -1), self.integrator
+        acceleration = self.acceleration.reshape(-1)
+        if self._complete is not None:
+            self._complete(
+                integrator.prediction, integrator.u_from_a, integrator.v_from_a, acceleration, values
+            )
+            return
+        np.matmul(self._advance[:, :3], values, out=self._ahead)
+        np.multiply(self._advance[:, 3:], acceleration, out=values[:2])
+        values[:2] += self._ahead
+        values[2] = acceleration
 
 
 def _product(matrix: FloatArray | sp.csr_array, x: FloatArray, out: FloatArray) -> FloatArray:
@@ -271,3 +322,12 @@ def _product(matrix: FloatArray | sp.csr_array, x: FloatArray, out: FloatArray) 
 
 def _operand(matrix: sp.csr_array) -> FloatArray | sp.csr_array:
     return np.ascontiguousarray(matrix.toarray()) if matrix.shape[0] <= _DENSE_UP_TO else matrix
+
+
+def _parts(
+    matrix: sp.csr_array | None, n: int
+) -> tuple[npt.NDArray[np.uint32], npt.NDArray[np.uint32], FloatArray]:
+    """Row starts, columns and entries; of an empty matrix (n, n) for None. Unsigned: see the band kernel."""
+    if matrix is None:
+        return np.zeros(n + 1, dtype=np.uint32), np.zeros(0, dtype=np.uint32), np.zeros(0)
+    return matrix.indptr.astype(np.uint32), matrix.indices.astype(np.uint32), matrix.data

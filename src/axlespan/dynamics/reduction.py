@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
+from scipy.linalg import eigh
 
 from axlespan.errors import InputError
 from axlespan.linalg.eigen import lowest_modes
@@ -105,9 +106,10 @@ def reduced_basis(
         basis = np.hstack([basis, extra])
     if extra is not None and extra.size:
         basis = np.hstack([basis, _compressed(extra, K, basis, 1e-8)])
-    # The basis is K-orthonormal: a standard eigenproblem for 1 / ω², exact where ω is low.
-    gram = basis.T @ np.asarray(M @ basis)
-    flexibility, turn = np.linalg.eigh(0.5 * (gram + gram.T))
+    # Eigenproblem for 1 / ω², exact where ω is low. The basis is K-orthonormal but for rounding, which is not
+    # small where a basis nearly holds all d.o.f. of a stiff structure.
+    gram, unit = basis.T @ np.asarray(M @ basis), basis.T @ np.asarray(K @ basis)
+    flexibility, turn = eigh(0.5 * (gram + gram.T), 0.5 * (unit + unit.T))
     order = np.flatnonzero(flexibility > 1e-14 * flexibility[-1])[::-1]
     roots = np.sqrt(flexibility[order])
     vectors = np.ascontiguousarray(basis @ (turn[:, order] / roots))

@@ -35,10 +35,11 @@ class PreparedStructure:
         time_step: float,
         path_dofs: IntArray,
         *,
+        loaded: int | None = None,
         solver: str = "auto",
     ) -> None:
         self.integrator = Integrator(matrices, method, time_step, solver=solver)
-        self.columns = PathColumns(self.integrator, path_dofs)
+        self.columns = PathColumns(self.integrator, path_dofs, loaded)
 
     def body(self, states: list[State], loads: list[FloatArray]) -> StructureBody:
         """The structure at the states of several crossings, under their Eᵀ X (n,)."""
@@ -148,6 +149,10 @@ class StructureBody:
         self._loaded = self.columns.held
         self._load = coupled if known is None else coupled + known
         self.stepper.finish()
+
+    def carry(self, load: FloatArray) -> None:
+        """Set the load (n,) of the last completed step, of a single crossing: wheels and all else that acts inside."""
+        self._loaded, self._load = np.arange(self._n_dof), load
 
     def put(self, values: FloatArray, load: FloatArray) -> None:
         """Set the state (3, n) at the new time and Eᵀ X (n,), computed elsewhere, of a single crossing."""

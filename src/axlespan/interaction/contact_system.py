@@ -19,6 +19,8 @@ from scipy.linalg.lapack import dposv
 from axlespan.contact.rows import RowBlock
 from axlespan.errors import AxlespanError
 from axlespan.interaction.bodies import FleetBody, StructureBody
+from axlespan.interaction.path_columns import PathColumns
+from axlespan.interaction.path_kernel import compiled_sandwich
 from axlespan.interaction.plan import Plan
 
 FloatArray = npt.NDArray[np.float64]
@@ -123,7 +125,9 @@ def stretch_of(
     contacts = _offsets([plan.rows.n_contact for plan in plans])
     ranks = _offsets([len(plan.fleet.coupled) for plan in plans])
     n_local = max(rows.dofs.shape[2] for rows in crossings)
-    coupled, forced = _Wheels(n_step, n_local), _Wheels(n_step, n_local)
+    n_coupled = [len(rows.active) for rows in crossings]
+    n_forced = sum(len(rows.rank) for rows in crossings) - sum(n_coupled)
+    coupled, forced = _Wheels(n_step, sum(n_coupled), n_local), _Wheels(n_step, n_forced, n_local)
     parts = []
     for lane, rows in enumerate(crossings):
         is_coupled = rows.rank >= 0
@@ -131,54 +135,48 @@ def stretch_of(
         forced.append(rows, ~is_coupled, contacts[lane] + rows.live[~is_coupled], lane, structure)
         if systems and fleet is not None and len(rows.active):
             parts.append(_system(rows, int(ranks[lane]), structure, fleet))
-    flat, held, weights, into = coupled.joined()
-    _, forced_held, forced_weights, forced_contacts = forced.joined()
     gap = np.concatenate([rows.gap for rows in crossings], axis=1)
     return Stretch(
         first,
         n_step,
         crossings,
-        flat,
-        held,
-        weights,
-        into,
+        coupled.flat,
+        coupled.held,
+        coupled.weights,
+        coupled.names,
         gap,
         parts,
-        forced_contacts,
-        forced_held,
-        forced_weights,
+        forced.names,
+        forced.held,
+        forced.weights,
     )
 
 
 class _Wheels:
     """Rows of wheels from several crossings, gathered into arrays of one width."""
 
-    def __init__(self, n_step: int, n_local: int) -> None:
-        self._n_local = n_local
-        self._flat = [np.empty((n_step, 0, n_local), dtype=np.int64)]
-        self._held = [np.empty((n_step, 0, n_local), dtype=np.int64)]
-        self._weights = [np.empty((n_step, 0, n_local))]
-        self._names = [np.empty(0, dtype=np.int64)]
+    def __init__(self, n_step: int, n_wheel: int, n_local: int) -> None:
+        shape = (n_step, n_wheel, n_local)
+        self.flat, self.held = np.zeros(shape, dtype=np.int64), np.zeros(shape, dtype=np.int64)
+        self.weights, self.names = np.zeros(shape), np.empty(n_wheel, dtype=np.int64)
+        self._filled = 0
 
     def append(
         self, rows: Rows, which: npt.NDArray[np.bool_], names: IntArray, lane: int, structure: StructureBody
     ) -> None:
         """Add some wheels of one crossing."""
-        missing = self._n_local - rows.dofs.shape[2]
-        dofs = np.pad(rows.dofs[:, which], ((0, 0), (0, 0), (0, missing)))
-        self._flat.append(dofs * structure.lanes + lane)
-        self._held.append(structure.columns.position[dofs] * structure.lanes + lane)
-        self._weights.append(np.pad(rows.weights[:, which], ((0, 0), (0, 0), (0, missing))))
-        self._names.append(names)
-
-    def joined(self) -> tuple[IntArray, IntArray, FloatArray, IntArray]:
-        """Places in the state, places in held loads, weights and names of all wheels."""
-        return (
-            np.concatenate(self._flat, axis=1),
-            np.concatenate(self._held, axis=1),
-            np.concatenate(self._weights, axis=1),
-            np.concatenate(self._names),
-        )
+        all_of_them = bool(which.all())
+        dofs = rows.dofs if all_of_them else rows.dofs[:, which]
+        n_wheel, n_local = dofs.shape[1:]
+        here = (slice(None), slice(self._filled, self._filled + n_wheel), slice(n_local))
+        lanes = structure.lanes
+        np.multiply(dofs, lanes, out=self.flat[here])
+        self.flat[here] += lane
+        places = structure.columns.position if lanes == 1 else structure.columns.position * lanes + lane
+        self.held[here] = places[dofs]
+        self.weights[here] = rows.weights if all_of_them else rows.weights[:, which]
+        self.names[here[1]] = names
+        self._filled += n_wheel
 
 
 def _offsets(sizes: Sequence[int]) -> IntArray:
@@ -191,22 +189,29 @@ def _system(rows: Rows, offset: int, structure: StructureBody, fleet: FleetBody)
     owner = fleet.fleet.vehicle_of
     contacts = np.flatnonzero(np.isin(owner, owner[own]))
     vehicles = fleet.compliance[contacts][:, contacts].toarray()
-    matrices = np.repeat(0.5 * (vehicles + vehicles.T)[None], len(rows.positions), axis=0)
+    vehicles = 0.5 * (vehicles + vehicles.T)
     at = np.searchsorted(contacts, own)
     local = structure.columns.position[rows.dofs[:, rows.active]]
-    matrices[:, at[:, None], at] += path_compliance(
-        structure.columns.compliance, local, rows.weights[:, rows.active]
-    )
+    line = path_compliance(structure.columns, local, rows.weights[:, rows.active])
+    if np.array_equal(own, contacts):
+        line += vehicles
+        return System(contacts, line)
+    matrices = np.repeat(vehicles[None], len(rows.positions), axis=0)
+    matrices[:, at[:, None], at] += line
     return System(contacts, matrices)
 
 
-def path_compliance(compliance: FloatArray, local: IntArray, weights: FloatArray) -> FloatArray:
-    """E Z Eᵀ (n_step, n_wheel, n_wheel) for rows on the path and its compliance Z (n_path, n_path)."""
+def path_compliance(columns: PathColumns, local: IntArray, weights: FloatArray) -> FloatArray:
+    """E Z Eᵀ (n_step, n_wheel, n_wheel) for rows on the held d.o.f. and their compliance Z."""
     n_step, n_wheel, n_local = local.shape
+    compliance = columns.compliance
     n_path = compliance.shape[0]
     if not n_path:  # every wheel stands right over a support
         return np.zeros((n_step, n_wheel, n_wheel))
     result = np.empty((n_step, n_wheel, n_wheel))
+    if (sandwich := compiled_sandwich()) is not None:
+        sandwich(compliance, columns.offset, columns.low, columns.high, local, weights, result)
+        return result
     ones = np.ones(n_local)
     some_steps = max(1, _GATHER // max(n_wheel * max(n_path, n_wheel * n_local), 1))
     for begin in range(0, n_step, some_steps):

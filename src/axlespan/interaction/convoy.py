@@ -142,7 +142,7 @@ class Convoy:
         """Put the states of the bodies back into the lanes, after so many steps."""
         for i, lane in enumerate(self.lanes):
             lane.structure, lane.load = self.structure.lane(i), self.structure.load_of(i)
-            lane.forces = self.tape_of(i).forces[-1].copy()
+            lane.forces = self.tape.last_forces(self.contacts[i])
             if self.fleet is not None:
                 lane.fleet = State(self.fleet.state.values[:, self.vehicle_dofs[i]].copy())
             lane.done += n_step

@@ -1,21 +1,101 @@
-"""A crossing: a train, a structure, a speed and what lies between wheel and rail."""
+"""A crossing: trains, a structure, how they move and what lies between wheel and rail."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 
-from axlespan.contact.motion import SpeedHistory
+from axlespan.contact.motion import Course, SpeedHistory
 from axlespan.errors import InputError
 from axlespan.irregularity import Profile, Smooth
-from axlespan.running.structure import Structure
-from axlespan.vehicles.train import Train
+from axlespan.model.dofs import nearest
+from axlespan.running.structure import MAIN_LINE, Structure
+from axlespan.vehicles.train import Placement, Train
 from axlespan.vehicles.vehicle import GRAVITY
+
+#: Directions of a train, by their words.
+DIRECTIONS = {"forward": 1, "backward": -1}
+
+#: r(x) of one line or of all, or of lines by their names; lines that are not named are even.
+Irregularity = Profile | Mapping[str, Profile]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Movement:
+    """How a train moves; the parameters are those of :class:`Crossing`."""
+
+    speed: float | None = None
+    speed_history: Sequence[Sequence[float]] | None = None
+    acceleration: float | None = None
+    to_speed: float | None = None
+    start: float | None = None
+    direction: str = "forward"
+    line: str | Mapping[str, str] | None = None
+    delay: float = 0.0
+    irregularity: Irregularity | None = None
+
+    def __post_init__(self) -> None:
+        if (self.speed is None) == (self.speed_history is None):
+            raise InputError("must be given either as speed or as speed_history", field="crossing.speed")
+        if self.start is not None and not abs(self.start) < float("inf"):
+            raise InputError("must be a finite number", field="crossing.start", value=self.start)
+        if not 0.0 <= self.delay < float("inf"):
+            raise InputError("must be zero or positive", field="delay", value=self.delay)
+        if self.direction not in DIRECTIONS:
+            raise nearest(self.direction, list(DIRECTIONS), "direction")
+        for name in ("acceleration", "to_speed"):
+            if self.speed_history is not None and getattr(self, name) is not None:
+                raise InputError("goes with speed, not with speed_history", field=name)
+        if self.to_speed is not None and self.acceleration is None:
+            raise InputError("needs an acceleration", field="to_speed", value=self.to_speed)
+        _ = self.motion
+
+    @property
+    def motion(self) -> SpeedHistory:
+        """Speed over time, which begins at the delay."""
+        if self.speed_history is not None:
+            return SpeedHistory.through(self.speed_history)
+        assert self.speed is not None
+        if self.acceleration is not None:
+            return SpeedHistory.accelerating(self.speed, self.acceleration, self.to_speed)
+        return SpeedHistory.constant(self.speed)
+
+    def on_line(self, name: str) -> str:
+        """The structure's line that wheels of a vehicle's line run on."""
+        if isinstance(self.line, str):
+            return self.line if name == MAIN_LINE else name
+        return name if self.line is None else self.line.get(name, name)
 
 
 @dataclass(frozen=True, eq=False)
-class Crossing:
-    """A train crosses a structure.
+class OtherTrain(Movement):
+    """A further train of a crossing; see :class:`Crossing` for what is said of its movement.
+
+    Parameters
+    ----------
+    train : Train
+    irregularity : Profile or mapping, optional
+        That of the crossing when left out.
+    """
+
+    train: Train
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """One train of a crossing: where it is, which lines its wheels run on, and how even they are."""
+
+    train: Train
+    course: Course
+    lines: tuple[str, ...]  # (n_contact,) names of running lines
+    profiles: tuple[Profile, ...]  # (n_contact,)
+    first: int  # vehicles of the trains before
+
+
+@dataclass(frozen=True, eq=False)
+class Crossing(Movement):
+    """One or several trains cross a structure.
 
     Parameters
     ----------
@@ -24,43 +104,106 @@ class Crossing:
     train : Train
         Its first wheel is the head.
     speed : float, optional
-        Constant speed [m/s]; or give ``speed_history``.
+        Speed [m/s]; or give ``speed_history``.
     speed_history : sequence of (time, speed), optional
         Linear in between, constant outside [s, m/s].
-    start : float
-        Position of the head at time zero [m]; 0 is the start of the line, negative is before it.
-    irregularity : Profile
-        r(x) of the line; r > 0 lifts the wheel.
+    acceleration, to_speed : float, optional
+        The speed changes from ``speed`` at time zero with a constant acceleration [m/s^2] until it is ``to_speed``
+        [m/s]; without ``to_speed`` a train that brakes stops and stands.
+    start : float, optional
+        Position of the head at time zero [m]: 0 when left out, the end of its line for a train that runs backward.
+    direction : {"forward", "backward"}
+        Backward trains run along decreasing positions.
+    line : str or mapping, optional
+        Running line of the wheels that name none; or lines of the structure by those that the wheels name.
+    delay : float
+        The train is at its start this much later than time zero [s]; before, it runs at its first speed.
+    irregularity : Profile or mapping of Profile, optional
+        r(x); r > 0 lifts the wheel. By names of lines, or one for all; even when left out.
     gravity : float
         [m/s^2].
+    others : sequence of OtherTrain
+        Further trains, on this line or others. Their vehicles are numbered on.
 
     Raises
     ------
     InputError
-        If the speed is given twice or not at all, or a value is out of range.
+        If the speed is given twice or not at all, a value is out of range, or a line is unknown.
     """
 
     structure: Structure
     train: Train
-    speed: float | None = None
-    speed_history: Sequence[Sequence[float]] | None = None
-    start: float = 0.0
-    irregularity: Profile = field(default_factory=Smooth)
     gravity: float = GRAVITY
+    others: Sequence[OtherTrain] = ()
 
     def __post_init__(self) -> None:
-        if (self.speed is None) == (self.speed_history is None):
-            raise InputError("must be given either as speed or as speed_history", field="crossing.speed")
-        if not abs(self.start) < float("inf"):
-            raise InputError("must be a finite number", field="crossing.start", value=self.start)
+        super().__post_init__()
         if not 0.0 <= self.gravity < float("inf"):
             raise InputError("must be zero or positive", field="gravity", value=self.gravity)
-        _ = self.motion
+
+    @cached_property
+    def runs(self) -> tuple[Run, ...]:
+        """All trains, this one first.
+
+        Raises
+        ------
+        InputError
+            If a line is unknown.
+        """
+        runs: list[Run] = []
+        for moving in (self, *self.others):
+            first = sum(len(run.train.placements) for run in runs)
+            runs.append(self._run(moving, moving.train, first))
+        return tuple(runs)
+
+    def _run(self, moving: Movement, train: Train, first: int) -> Run:
+        lines = tuple(moving.on_line(point.line) for _, _, point, _ in train.contacts)
+        for name in dict.fromkeys(lines):
+            self.structure.line(name)  # it is there
+        direction, start = DIRECTIONS[moving.direction], moving.start
+        if start is None:
+            start = 0.0 if direction > 0 else self.structure.line(lines[0]).stop
+        irregularity = moving.irregularity if moving.irregularity is not None else self.irregularity
+        profiles = self._profiles(irregularity, lines)
+        return Run(
+            train,
+            Course(moving.motion, float(start), direction, moving.delay),
+            lines,
+            tuple(profiles[name] for name in lines),
+            first,
+        )
+
+    def _profiles(self, irregularity: Irregularity | None, lines: Sequence[str]) -> dict[str, Profile]:
+        """Profiles of some lines by their names."""
+        even = Smooth()
+        if irregularity is None:
+            return dict.fromkeys(lines, even)
+        if not isinstance(irregularity, Mapping):
+            return dict.fromkeys(lines, irregularity)
+        own = {self.line_name(name): profile for name, profile in irregularity.items()}
+        return {name: own.get(self.line_name(name), even) for name in lines}
+
+    def line_name(self, name: str) -> str:
+        """Name of a line as the structure has it: the main line may be one of another name."""
+        self.structure.line(name)
+        return name if name in self.structure.lines else next(iter(self.structure.lines))
 
     @property
-    def motion(self) -> SpeedHistory:
-        """Speed over time."""
-        if self.speed_history is not None:
-            return SpeedHistory.through(self.speed_history)
-        assert self.speed is not None
-        return SpeedHistory.constant(self.speed)
+    def train_names(self) -> str:
+        """Names of all trains."""
+        return "; ".join(run.train.name for run in self.runs)
+
+    @property
+    def placements(self) -> tuple[Placement, ...]:
+        """Vehicles of all trains."""
+        return tuple(item for run in self.runs for item in run.train.placements)
+
+    @property
+    def contact_lines(self) -> tuple[str, ...]:
+        """Lines (n_contact,) that the wheels of all trains run on."""
+        return tuple(line for run in self.runs for line in run.lines)
+
+    @property
+    def contact_names(self) -> tuple[str, ...]:
+        """Names of the contacts, ``vehicle.wheel``; vehicles count from the head of the first train on."""
+        return tuple(name for run in self.runs for name in run.train.names_from(run.first))

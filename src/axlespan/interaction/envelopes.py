@@ -73,7 +73,7 @@ class EnvelopeMonitor:
 
     def __init__(self, plan: Plan) -> None:
         self._plan = plan
-        self._position = plan.crossing.structure.line().breaks
+        self._position = plan.sensor_path.breaks
         n = len(self._position)
         self._forces: SectionForces | None = None
         dofs = [np.empty(0, dtype=np.int64)]

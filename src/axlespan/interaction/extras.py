@@ -1,4 +1,4 @@
-"""What a result has only when asked for, as named arrays: section forces, stresses, envelopes, fields."""
+"""What a result has only when asked for, as named arrays: section forces, stresses, the deck, envelopes, fields."""
 
 from __future__ import annotations
 
@@ -26,6 +26,13 @@ SECTION_VARIABLES: dict[str, tuple[str, str, str]] = {
         "N/m^2, of shells N/m or N m/m",
         "elastic stresses of solids, resultants of shells (x along global x)",
     ),
+}
+#: name -> (dimension beside time, unit, meaning)
+LINE_VARIABLES: dict[str, tuple[str, str, str]] = {
+    "line_displacement": ("line_point", "m", "vertical displacement along the deck, positive upward"),
+    "line_acceleration": ("line_point", "m/s^2", "vertical acceleration along the deck"),
+    "line_twist": ("line_point", "m", "change over 3 m of the left line's height over the right one's"),
+    "line_slope": ("line_end", "rad", "slope dw/ds of the deck at the ends of its line"),
 }
 # end of the name -> attribute of an envelope
 _SIDES = {
@@ -66,6 +73,10 @@ def extra_coordinates(result: Result) -> dict[str, Variable]:
         found["section"] = _names("section", result.section, "sensor at which section forces are kept")
     if result.stress:
         found["stress"] = _names("stress", result.stress, "sensor.component")
+    if len(result.line_position):
+        along = "position along the line of the deck"
+        found["line_position"] = Variable(("line_point",), result.line_position, "m", along)
+        found["line_end"] = Variable(("line_end",), result.line_end, "m", along)
     if result.envelopes is not None:
         meaning = "position along the running line"
         found["station"] = Variable(("station",), result.envelopes.position, "m", meaning)
@@ -76,11 +87,15 @@ def extra_coordinates(result: Result) -> dict[str, Variable]:
 
 
 def extra_variables(result: Result) -> dict[str, Variable]:
-    """Section forces, stresses, envelopes and fields of a result, as far as it has them."""
+    """Section forces, stresses, the deck's motion, envelopes and fields of a result, as far as it has them."""
     found: dict[str, Variable] = {}
     for name, (dimension, unit, meaning) in SECTION_VARIABLES.items():
         if getattr(result, dimension):
             found[name] = Variable(("time", dimension), getattr(result, name), unit, meaning)
+    if len(result.line_position):
+        for name, (dimension, unit, meaning) in LINE_VARIABLES.items():
+            if getattr(result, name).shape[1]:  # no twist without two lines
+                found[name] = Variable(("time", dimension), getattr(result, name), unit, meaning)
     if result.envelopes is not None:
         for quantity, table in result.envelopes.tables.items():
             for end, attribute in _SIDES.items():
@@ -108,6 +123,9 @@ def extras_from(arrays: Mapping[str, npt.NDArray[Any]]) -> dict[str, Any]:
     for name, (dimension, *_) in SECTION_VARIABLES.items():
         if dimension in arrays:
             found |= {dimension: tuple(arrays[dimension].tolist()), name: arrays[name]}
+    if "line_position" in arrays:
+        names = ("line_position", "line_end", *LINE_VARIABLES)
+        found |= {name: arrays[name] for name in names if name in arrays or name != "line_twist"}
     if "station" in arrays:
         quantities = [quantity for quantity in UNITS if f"envelope_{quantity}_largest" in arrays]
         tables = {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +16,7 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 # Steps at which the energy of a run is balanced: many of a small model, a few of a large one.
-_ENERGY_SAMPLES, _FEWEST_SAMPLES, _SAMPLED_DOFS = 128, 8, 400_000
+_ENERGY_SAMPLES, _FEWEST_SAMPLES, _SAMPLED_DOFS = 128, 8, 100_000
 
 
 # Smallest displacement [m] that a compatibility residual is related to.
@@ -27,9 +28,13 @@ class CompatibilityMonitor:
 
     def __init__(self) -> None:
         self._worst, self._scale = 0.0, _SMALLEST
+        self.touching: Callable[[], npt.NDArray[np.bool_]] | None = None  # which wheels; None: all
 
     def look(self, wheels: FloatArray, line: FloatArray) -> None:
         """Compare wheels with the line under them (n_coupled,) [m]."""
+        if len(wheels) and self.touching is not None:
+            which = self.touching()
+            wheels, line = wheels[which], line[which]
         if len(wheels) and np.all(np.isfinite(wheels)) and np.all(np.isfinite(line)):
             self._worst = max(self._worst, float(np.abs(wheels - line).max()))
             self._scale = max(self._scale, float(np.abs(wheels).max()))
@@ -44,7 +49,7 @@ class BalanceMonitor:
     """Vertical equilibrium of the whole structure at each step: reactions, loads, wheels and inertia."""
 
     def __init__(self, plan: Plan, prescribed_paths: list[tuple[IntArray, PolynomialPath]]) -> None:
-        self._plan, self._prescribed_paths = plan, prescribed_paths
+        self._plan = plan
         system = plan.crossing.structure.system
         t = system.translation("z")
         self._t_prescribed = t[system.prescribed]
@@ -61,7 +66,19 @@ class BalanceMonitor:
         self._rows = [(vector[system.prescribed], name) for vector, name in rows]
         self.sums = [(np.ascontiguousarray(vector[system.free]), "uva".index(name)) for vector, name in rows]
         self._loads = [(float(t @ load.vector), load.factor) for load in system.loads]
+        # Each wheel's line when the whole structure moves up by one.
+        free = [(path.wheels, path.free) for path in plan.rows.paths]
+        self._lifted = [
+            (wheels, path.moved_by(unit))
+            for paths, unit in ((free, self._t_free), (prescribed_paths, self._t_prescribed))
+            for wheels, path in paths
+            if len(path.path_dofs)
+        ]
         self._inertia, self._worst, self._scale = 0.0, 0.0, 0.0
+        # Steps whose accelerations were set anew, with the inertia that these leave out: those where a wheel landed,
+        # and, with the new ones (n,), those after which a wheel let go.
+        self.restarted: Mapping[int, float] = {}
+        self.released: Mapping[int, tuple[FloatArray, float]] = {}
 
     def look(
         self,
@@ -85,9 +102,14 @@ class BalanceMonitor:
             value = sums[:, i] + moved
             if name == "a" and alpha != 0.0:
                 for k, step in enumerate(steps):
-                    self._inertia = (
-                        value[k] if step == 0 else (value[k] + alpha * self._inertia) / (1.0 + alpha)
-                    )
+                    if int(step) - 1 in self.released:
+                        anew, excess = self.released[int(step) - 1]
+                        before = moved[k - 1] if k else moved[k]  # a support hardly changes its acceleration
+                        self._inertia = float(self.sums[i][0] @ anew) + before + excess
+                    if step == 0 or int(step) in self.restarted:
+                        self._inertia = value[k] + self.restarted.get(int(step), 0.0)
+                    else:
+                        self._inertia = (value[k] + alpha * self._inertia) / (1.0 + alpha)
                     totals[k] += self._inertia
             else:
                 totals += value
@@ -100,13 +122,10 @@ class BalanceMonitor:
     def _share(self, positions: FloatArray) -> FloatArray:
         """Share (n_step, n_contact) of each wheel's force that the structure carries: 1, or less at its ends."""
         result = np.zeros(positions.shape)
-        free = [(path.wheels, path.free) for path in self._plan.rows.paths]
-        for groups, unit in ((free, self._t_free), (self._prescribed_paths, self._t_prescribed)):
-            for wheels, path in groups:
-                near = wheels[path.carries(positions[:, wheels]).any(axis=0)]
-                if len(near) and len(path.path_dofs):
-                    dofs, weights = path.weights(positions[:, near])
-                    result[:, near] += (unit[dofs] * weights).sum(axis=2)
+        for wheels, path in self._lifted:
+            near = wheels[path.carries(positions[:, wheels]).any(axis=0)]
+            if len(near):
+                result[:, near] += path.weights(positions[:, near])[1][..., 0]
         return result
 
     @property
@@ -161,7 +180,7 @@ class TensionMonitor:
         )
 
     def _episodes_of(self, wheel: int, times: FloatArray, forces: FloatArray, positions: FloatArray) -> None:
-        name = self._plan.crossing.train.contact_names[wheel]
+        name = self._plan.crossing.contact_names[wheel]
         for time, force, position in zip(times.tolist(), forces.tolist(), positions.tolist(), strict=True):
             current = self._open.get(wheel)
             if force < 0.0:
@@ -200,6 +219,8 @@ class EnergyMonitor:
 
     def __init__(self, plan: Plan) -> None:
         self._plan = plan
+        self.restarted: Collection[int] = ()  # steps at which a wheel landed: they lose energy
+        self.released: Collection[int] = ()  # steps after which a wheel let go
         steps = plan.settings.steps
         count = max(_FEWEST_SAMPLES, min(_ENERGY_SAMPLES, _SAMPLED_DOFS // plan.structure.size))
         self._samples = set(np.unique(np.linspace(1, steps, min(count, steps)).astype(int)).tolist())
@@ -213,7 +234,9 @@ class EnergyMonitor:
         self, step: int, structure: State, vehicles: State, load: FloatArray, forces: FloatArray
     ) -> None:
         """Look at a completed step: states, Eᵀ X (n,) and contact forces (n_coupled,)."""
-        if step in self._samples and self._before is not None and self._before_step == step - 1:
+        follows = self._before_step == step - 1
+        follows &= step not in self.restarted and step - 1 not in self.released
+        if step in self._samples and self._before is not None and follows:
             self._balance(step, structure, vehicles, load, forces)
         self._before = None
         if step + 1 in self._samples:

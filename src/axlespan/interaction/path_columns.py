@@ -12,6 +12,7 @@ import numpy.typing as npt
 from scipy.linalg.blas import daxpy
 
 from axlespan.dynamics.integrator import Integrator
+from axlespan.interaction.path_kernel import compiled_sandwich
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -21,6 +22,14 @@ _WHOLE_PRODUCT_UP_TO = 100_000
 
 # Columns that no wheel needs any more are dropped when they are more than this share of those held.
 _IDLE_SHARE = 0.5
+
+# Along a narrow band a column of A⁻¹ dies away within some meters: in one time step the load is felt no farther.
+# Entries below this share of its largest one are rounding, and left out; none above the second one is missed.
+_NOTHING, _MISSED = 1e-17, 1e-16
+# Columns from which the reach is estimated, and columns that are solved for together.
+_SAMPLES, _TOGETHER = 17, 64
+# Places kept beyond the reach: the rows under one wheel are added up over what all of them keep.
+_MARGIN = 40
 
 
 class PathColumns:
@@ -32,21 +41,25 @@ class PathColumns:
         Of the structure.
     path_dofs : array (n_path,)
         D.o.f. that running lines use, sorted.
+    loaded : int, optional
+        How many of them are loaded at a time, at most; when left out, as many as the first wheels load.
 
     Notes
     -----
-    ``held`` are the d.o.f. whose columns are at hand. Where a second solve costs less than the product with
-    whole columns (narrow bands), only their entries on the path are kept.
+    ``held`` are the d.o.f. whose loads a step may name. Where a second solve costs less than the product with
+    whole columns (narrow bands), these are all d.o.f. of the path, and only the entries of the columns on the path
+    are kept, as far as they reach.
     """
 
-    def __init__(self, integrator: Integrator, path_dofs: IntArray) -> None:
-        self.integrator, self.path_dofs = integrator, path_dofs
+    def __init__(self, integrator: Integrator, path_dofs: IntArray, loaded: int | None = None) -> None:
+        self.integrator, self.path_dofs, self._loaded = integrator, path_dofs, loaded
         self.held = np.empty(0, dtype=np.int64)
         self.position = np.zeros(integrator.size, dtype=np.int64)  # d.o.f. -> place among the held ones
-        self._on_path = np.zeros(integrator.size, dtype=np.int64)
-        self._on_path[path_dofs] = np.arange(len(path_dofs))
         self._columns = np.empty((0, integrator.size))
-        self.compliance = np.empty((0, 0))  # (1+α) β Δt² R A⁻¹ Rᵀ of the held d.o.f. [m/N]
+        # (1+α) β Δt² R A⁻¹ Rᵀ of the held d.o.f. [m/N]: row i begins at entry offset[i]; it is zero but from low[i] to
+        # high[i].
+        self.compliance = np.empty((0, 0))
+        self.offset = self.low = self.high = np.empty(0, dtype=np.int64)
         self.solves_again: bool | None = None  # decided with the first wheels
 
     @property
@@ -54,12 +67,25 @@ class PathColumns:
         """Memory of the columns held [byte]."""
         return int(self._columns.nbytes + self.compliance.nbytes)
 
+    def for_others(self) -> PathColumns:
+        """Columns of the same structure for other crossings, which go on by themselves."""
+        return PathColumns(self.integrator, self.path_dofs, self._loaded)
+
     def hold(self, dofs: IntArray) -> None:
         """Have the columns of some d.o.f. of the path at hand; drop others that are idle."""
-        needed = np.unique(dofs)
+        mark = np.zeros(len(self.position), dtype=bool)
+        mark[dofs] = True
+        needed = np.flatnonzero(mark)
         if self.solves_again is None and len(needed):
-            self.solves_again = self._second_solve_pays(len(needed))
-            self._columns = np.empty((0, len(self.path_dofs) if self.solves_again else self.integrator.size))
+            self.solves_again = self._second_solve_pays(self._loaded or len(needed))
+            if self.solves_again:
+                self._hold_path()
+        if self.solves_again:
+            self._add_rows(self.position[needed])
+        else:
+            self._hold_whole(needed)
+
+    def _hold_whole(self, needed: IntArray) -> None:
         missing = np.setdiff1d(needed, self.held, assume_unique=True)
         idle = len(self.held) + len(missing) - len(needed)
         if not len(missing) and idle <= _IDLE_SHARE * len(self.held):
@@ -71,29 +97,69 @@ class PathColumns:
         )
         held = np.concatenate([self.held[keep], missing])
         order = np.argsort(held)
-        self._columns = np.concatenate([self._columns[keep], self._new(missing)])[order]
+        self._columns = np.concatenate([self._columns[keep], self.integrator.columns(missing)])[order]
         self.held = held[order]
         self.position[:] = 0
         self.position[self.held] = np.arange(len(self.held))
-        where = self._on_path[self.held] if self.solves_again else self.held
-        scale = self.integrator.weight_c * self.integrator.u_from_a
-        block = scale * self._columns[:, where]
+        block = self._scale * self._columns[:, self.held]
         self.compliance = 0.5 * (block + block.T)
+        self.offset = self.low = np.zeros_like(self.held)
+        self.high = np.full_like(self.held, len(self.held))
 
-    def _second_solve_pays(self, n_active: int) -> bool:
+    @property
+    def _scale(self) -> float:
+        return self.integrator.weight_c * self.integrator.u_from_a
+
+    def _second_solve_pays(self, loaded: int) -> bool:
         """Compare the memory traffic of a solve with that of a product with the columns under the wheels."""
         n = self.integrator.size
-        return n * n_active > _WHOLE_PRODUCT_UP_TO and 8 * n * n_active > 2 * self.integrator.factor.nbytes
+        return n * loaded > _WHOLE_PRODUCT_UP_TO and 8 * n * loaded > 2 * self.integrator.factor.nbytes
 
-    def _new(self, dofs: IntArray) -> FloatArray:
-        if not len(dofs):
-            return np.empty((0, self._columns.shape[1]))
-        if not self.solves_again:
-            return self.integrator.columns(dofs)
-        parts = [
-            self.integrator.columns(dofs[i : i + 256])[:, self.path_dofs] for i in range(0, len(dofs), 256)
-        ]
-        return np.concatenate(parts)
+    # --- entries on the path only ------------------------------------------------------------------
+
+    def _hold_path(self) -> None:
+        """Hold the whole path, its columns still to be computed, with as many entries as they seem to need."""
+        n = len(self.path_dofs)
+        self.held = self.path_dofs
+        self.position[self.held] = np.arange(n)
+        reach = n
+        if compiled_sandwich() is not None:
+            sample = np.unique(np.linspace(0, n - 1, _SAMPLES).astype(np.int64))
+            low, high = _extent(self._entries(sample), _NOTHING)
+            reach = int(1.1 * max(np.max(sample - low), np.max(high - sample))) + _MARGIN
+        self._make_room(reach)
+
+    def _make_room(self, reach: int) -> None:
+        n = len(self.path_dofs)
+        width = min(2 * reach + 1, n)
+        self.offset = np.clip(np.arange(n) - reach, 0, n - width)
+        self.low, self.high = self.offset.copy(), self.offset + width
+        self.compliance = np.zeros((n, width))
+        self._there = np.zeros(n, dtype=bool)
+
+    def _entries(self, places: IntArray) -> FloatArray:
+        """Entries on the path (n, n_path) of the columns at some places."""
+        loads = np.zeros((self.integrator.size, len(places)))
+        loads[self.path_dofs[places], np.arange(len(places))] = self._scale
+        return np.ascontiguousarray(self.integrator.factor.solve(loads, out=loads)[self.path_dofs].T)
+
+    def _add_rows(self, needed: IntArray) -> None:
+        """Compute the columns at some places, unless they are there."""
+        missing = needed[~self._there[needed]]
+        width = self.compliance.shape[1]
+        for begin in range(0, len(missing), _TOGETHER):
+            some = missing[begin : begin + _TOGETHER]
+            entries, offset = self._entries(some), self.offset[some]
+            low, high = _extent(entries, _MISSED)
+            if np.any(low < offset) or np.any(high > offset + width):
+                # The sample did not show how far they reach: once more, with more room.
+                self._make_room(2 * max(int(np.max(some - low)), int(np.max(high - some)), width // 2))
+                self._add_rows(needed)
+                return
+            self.compliance[some] = np.take_along_axis(entries, offset[:, None] + np.arange(width), axis=1)
+            low, high = _extent(self.compliance[some], _NOTHING)
+            self.low[some], self.high[some] = low + offset, high + offset
+            self._there[some] = True
 
     def response(self, load: FloatArray) -> FloatArray:
         """Acceleration (n,) or (n, k) of the structure under loads (n_held,) or (n_held, k), downward: -(1+α) A⁻¹ Rᵀ load."""
@@ -108,3 +174,10 @@ class PathColumns:
         for i in np.flatnonzero(load).tolist():
             daxpy(self._columns[i], result, a=weight * load[i])
         return result
+
+
+def _extent(entries: FloatArray, share: float) -> tuple[IntArray, IntArray]:
+    """Of each row the first entry above a share of the largest one, and the place behind the last one."""
+    size = np.abs(entries)
+    counts = size > share * size.max(axis=1, keepdims=True)
+    return counts.argmax(axis=1), entries.shape[1] - counts[:, ::-1].argmax(axis=1)

@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
 
-from axlespan.contact.rows import TrainRows, WheelPath
+from axlespan.contact.laws_of_wheels import WheelLaws
+from axlespan.contact.rows import TrainRows, WheelPath, Wheels
 from axlespan.dynamics.integrator import Matrices
 from axlespan.elements.beam_sections import QUANTITIES
 from axlespan.errors import InputError
 from axlespan.interaction.crossing import Crossing
 from axlespan.interaction.forces import AppliedForces
+from axlespan.interaction.nonlinear_laws import laws_of, require_direct
+from axlespan.interaction.sensors import by_line, check_sensors, sensor_rows
 from axlespan.interaction.settings import Settings
+from axlespan.interaction.traffic import require_clear_tracks
 from axlespan.model.motions import Constant
 from axlespan.model.system import System
 from axlespan.running.path import PolynomialPath
@@ -62,9 +66,15 @@ class Plan:
     forces: AppliedForces
     fleet: Fleet
     rows: TrainRows
-    sensor_path: PolynomialPath  # of the first line, free d.o.f.
+    sensor_path: PolynomialPath  # of the line for sensors, free d.o.f.
     sensor_path_moving: PolynomialPath  # the same in the prescribed d.o.f. that move
     moving: IntArray  # (n_moving,) prescribed d.o.f. that move or are set down
+    laws: WheelLaws  # of the coupled wheels
+
+    @property
+    def is_nonlinear(self) -> bool:
+        """Whether contact may let go or give way, or the structure has nonlinear springs."""
+        return not self.laws.all_rigid or bool(self.crossing.structure.system.nonlinear)
 
     @property
     def times(self) -> FloatArray:
@@ -74,6 +84,10 @@ class Plan:
     def times_of(self, steps: IntArray) -> FloatArray:
         """Times [s] of time indices."""
         return np.asarray(steps * self.settings.time_step, dtype=np.float64)
+
+    def sensor_rows(self) -> sp.csr_array:
+        """Rows (n_sensor, n) of the sensors over the independent d.o.f. of the structure."""
+        return sensor_rows(self.crossing.structure, self.settings.sensors, self.settings.sensor_lines)
 
 
 def plan_for(crossing: Crossing, settings: Settings) -> Plan:
@@ -86,7 +100,8 @@ def plan_for(crossing: Crossing, settings: Settings) -> Plan:
     """
     crossing.structure.require_stable()
     _check_damping(crossing.structure)
-    system, line = crossing.structure.system, crossing.structure.line()
+    system = crossing.structure.system
+    line = crossing.structure.line(crossing.structure.sensor_line)
     moving = np.array(
         [
             j
@@ -100,15 +115,21 @@ def plan_for(crossing: Crossing, settings: Settings) -> Plan:
         settings=settings,
         structure=matrices_of(system),
         forces=AppliedForces.of(system),
-        fleet=fleet_of(crossing.train, crossing.gravity),
+        fleet=joined([fleet_of(run.train, crossing.gravity, run.first) for run in crossing.runs]),
         rows=_train_rows(crossing, settings, moving),
         sensor_path=_split(line, system, system.free),
         sensor_path_moving=_split(line, system, system.prescribed[moving]),
         moving=moving,
+        laws=laws_of(crossing, settings),
     )
+    if plan.is_nonlinear:
+        require_direct(settings, plan.laws, len(system.nonlinear))
     _check_time_step(plan)
     _check_reach(plan)
-    _check_sensors(crossing.structure, settings)
+    notes = require_clear_tracks(crossing, settings.time_step * settings.steps)
+    if notes:
+        plan = replace(plan, settings=replace(settings, notes=(*settings.notes, *notes)))
+    check_sensors(crossing.structure, settings.sensors, settings.sensor_lines)
     _check_sections(crossing.structure, settings)
     return plan
 
@@ -134,8 +155,8 @@ def matrices_of(system: System) -> Matrices:
     return Matrices(blocks.K_FF, blocks.M_FF, damping, system.modal_damping)
 
 
-def fleet_of(train: Train, gravity: float) -> Fleet:
-    """All vehicles of a train as one system."""
+def fleet_of(train: Train, gravity: float, first: int = 0) -> Fleet:
+    """All vehicles of a train as one system; ``first`` vehicles of other trains are counted before."""
     kinds: dict[int, Matrices] = {}
     blocks: list[Matrices] = []
     names: list[str] = []
@@ -150,7 +171,7 @@ def fleet_of(train: Train, gravity: float) -> Fleet:
             _check_vehicle(vehicle)
             own = kinds.setdefault(id(vehicle), matrices_of(vehicle.system))
             blocks.append(own)
-            names += [f"{i + 1}.{vehicle.system.free_name(j)}" for j in range(own.size)]
+            names += [f"{first + i + 1}.{vehicle.system.free_name(j)}" for j in range(own.size)]
             coupled += range(contact, contact + len(vehicle.contacts))
             dofs += (begin + vehicle.contact_dofs).tolist()
             owner += [i] * len(vehicle.contacts)
@@ -193,11 +214,12 @@ def joined(fleets: Sequence[Fleet]) -> Fleet:
 
 
 def _check_vehicle(vehicle: Vehicle) -> None:
-    """Vehicles carry no loads of their own yet, and their supports stand still."""
+    """Loads of vehicles are constant, so that only static contact forces know them; their supports stand still."""
     assert vehicle.system is not None
     moves = any(not (isinstance(m, Constant) and m.amount == 0.0) for m in vehicle.system.motions)
-    if vehicle.system.loads or moves:
-        what = "loads" if vehicle.system.loads else "supports that move"
+    varies = any(load.history is not None for load in vehicle.system.loads)
+    if varies or moves:
+        what = "loads that change in time" if varies else "supports that move"
         raise InputError(
             f"has {what}, which are not supported in vehicles", field="vehicle", value=vehicle.name
         )
@@ -221,18 +243,21 @@ def _block_diagonal(blocks: Sequence[Matrices]) -> Matrices:
 
 def _train_rows(crossing: Crossing, settings: Settings, moving: IntArray) -> TrainRows:
     system = crossing.structure.system
-    lines: dict[str, list[int]] = {}
-    for i, (_, _, point, _) in enumerate(crossing.train.contacts):
-        lines.setdefault(point.line, []).append(i)
-    paths = []
-    for name, wheels in lines.items():
+    profiles = [profile for run in crossing.runs for profile in run.profiles]
+    groups: dict[tuple[str, int], list[int]] = {}
+    for i, (name, profile) in enumerate(zip(crossing.contact_lines, profiles, strict=True)):
+        groups.setdefault((name, id(profile)), []).append(i)
+    lines: dict[str, tuple[PolynomialPath, PolynomialPath | None]] = {}
+    for name in dict.fromkeys(crossing.contact_lines):
         path = crossing.structure.line(name)
-        if settings.footprint > 0.0:
-            path = path.spread(settings.footprint)
-        free = _split(path, system, system.free)
+        path = settings.under_wheels(path)
         prescribed = _split(path, system, system.prescribed[moving]) if len(moving) else None
-        paths.append(WheelPath(np.array(wheels, dtype=np.int64), free, prescribed, crossing.irregularity))
-    return TrainRows(crossing.motion, crossing.start, crossing.train.offsets, tuple(paths))
+        lines[name] = _split(path, system, system.free), prescribed
+    paths = tuple(
+        WheelPath(np.array(wheels, dtype=np.int64), *lines[name], profiles[wheels[0]])
+        for (name, _), wheels in groups.items()
+    )
+    return TrainRows(tuple(Wheels(run.course, run.train.offsets) for run in crossing.runs), paths)
 
 
 def _split(path: PolynomialPath, system: System, keep: IntArray) -> PolynomialPath:
@@ -242,9 +267,9 @@ def _split(path: PolynomialPath, system: System, keep: IntArray) -> PolynomialPa
 
 
 def _check_time_step(plan: Plan) -> None:
-    """The time step must resolve the vehicles, and the train must not leap over the structure."""
+    """The time step must resolve the vehicles, and no train may leap over the structure."""
     dt = plan.settings.time_step
-    for vehicle in {id(item.vehicle): item.vehicle for item in plan.crossing.train.placements}.values():
+    for vehicle in {id(item.vehicle): item.vehicle for item in plan.crossing.placements}.values():
         frequencies = vehicle.frequencies() if vehicle.is_multibody else np.empty(0)
         if len(frequencies) and dt * frequencies.max() > 1.0 / _STEPS_PER_PERIOD:
             period = 1.0 / frequencies.max()
@@ -255,7 +280,8 @@ def _check_time_step(plan: Plan) -> None:
                 value=f"{dt:g} s",
                 fix=f"Use {period / 40.0:.1g} s or less",
             )
-    leap = dt * float(np.max(plan.crossing.motion.speeds))
+    end = dt * plan.settings.steps
+    leap = dt * max(run.course.largest_speed(end) for run in plan.crossing.runs)
     length = plan.crossing.structure.length
     if leap > length / _STEPS_PER_CROSSING:
         raise InputError(
@@ -267,41 +293,34 @@ def _check_time_step(plan: Plan) -> None:
 
 
 def _check_reach(plan: Plan) -> None:
-    """Some wheel must be on the structure at some time, or the run says nothing about it."""
-    head = plan.crossing.start + plan.crossing.motion.distance(
-        plan.times_of(np.array([0, plan.settings.steps]))
-    )
-    path = plan.rows.paths[0].free
-    first, last = head[0] - plan.rows.offsets.max(), head[1]
-    if last < path.start or first > path.stop:
-        raise InputError(
-            f"never brings a wheel onto the structure, which lies between {path.start:g} and {path.stop:g} m",
-            field="crossing",
-            value=f"the first wheel runs from {head[0]:g} to {head[1]:g} m",
-            fix="Check start, speed, time_step and steps",
-        )
-
-
-def _check_sensors(structure: Structure, settings: Settings) -> None:
-    path = structure.line()
-    for name, position in settings.sensors.items():
-        if not path.start <= position <= path.stop:
+    """A wheel of each train must be on the structure at some time, or the run says nothing about it."""
+    ends = plan.times_of(np.array([0, plan.settings.steps]))
+    begin = 0
+    for number, run in enumerate(plan.crossing.runs):
+        wheels = begin + np.arange(len(run.lines))
+        begin += len(wheels)
+        paths = [path.free for path in plan.rows.paths if np.isin(path.wheels, wheels).any()]
+        start, stop = min(path.start for path in paths), max(path.stop for path in paths)
+        head = run.course.head(ends)
+        way = np.concatenate([head, head - run.course.direction * run.train.wheelbase])
+        if way.max() < start or way.min() > stop:
             raise InputError(
-                f"must lie on the structure, between {path.start:g} and {path.stop:g} m",
-                field=f"sensors.{name}",
-                value=position,
+                f"never brings a wheel onto the structure, which lies between {start:g} and {stop:g} m",
+                field=f"others.{number - 1}" if number else "crossing",
+                value=f"the first wheel runs from {head[0]:g} to {head[1]:g} m",
+                fix="Check start, speed, time_step and steps",
             )
 
 
 def _check_sections(structure: Structure, settings: Settings) -> None:
     """Section forces are those of beams under the line, stresses those of solids and shells."""
-    line = structure.line()
-    if settings.section_forces:
-        places = np.array([settings.sensors[name] for name in settings.section_forces], float)
-        BeamSections.at(structure, *line.locate(places), wanted="section_forces")
-    if settings.stresses:
-        places = np.array([settings.sensors[name] for name in settings.stresses], float)
-        StressPoints.at(structure, settings.stresses, places)
+    known = (settings.sensors, settings.sensor_lines)
+    for name, (_, places) in by_line(structure, settings.section_forces, *known).items():
+        segments, xi = structure.line(name).locate(places)
+        BeamSections.at(structure, segments, xi, name, wanted="section_forces")
+    for name, (numbers, places) in by_line(structure, settings.stresses, *known).items():
+        StressPoints.at(structure, [settings.stresses[i] for i in numbers], places, name)
     if any(name in QUANTITIES for name in settings.envelopes):
-        segments = np.arange(len(line.breaks) - 1)
-        BeamSections.at(structure, segments, np.zeros(len(segments)), wanted="envelopes")
+        name = structure.sensor_line
+        segments = np.arange(len(structure.line(name).breaks) - 1)
+        BeamSections.at(structure, segments, np.zeros(len(segments)), name, wanted="envelopes")

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection, Mapping
+
 import numpy as np
 import numpy.typing as npt
+import scipy.sparse as sp
 
 from axlespan.interaction.plan import Plan
 from axlespan.running.path import PolynomialPath
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
+
+# Up to this many entries a dense product is quicker than a sparse one.
+_DENSE_UP_TO = 10_000
 
 
 class Reactions:
@@ -26,12 +32,16 @@ class Reactions:
         together = abs(blocks.K_FP) + abs(blocks.M_FP) + abs(blocks.C_FP)
         self.free_dofs = np.unique(together.tocoo().row.astype(np.int64))
         self._K, self._M, self._C = (
-            np.asarray(m[self.free_dofs].toarray()) for m in (blocks.K_FP, blocks.M_FP, blocks.C_FP)
+            _operand(sp.csr_array(m)[self.free_dofs]) for m in (blocks.K_FP, blocks.M_FP, blocks.C_FP)
         )
         self._loads = [(load.vector[system.prescribed], load.factor) for load in system.loads]
         self._loads = [(vector, factor) for vector, factor in self._loads if np.any(vector)]
         self.paths = self._prescribed_paths()
         self._inertia = np.zeros(len(system.prescribed))
+        self.restarted: Collection[int] = ()  # steps whose accelerations are those of their own time
+        self.released: Mapping[int, tuple[FloatArray, float]] = {}  # accelerations (n,) set anew after such a step
+        # What nonlinear springs add in so many steps (n_step, n_P), in turn.
+        self.inner: Callable[[int], FloatArray | None] | None = None
 
     def _prescribed_paths(self) -> list[tuple[IntArray, PolynomialPath]]:
         """The lines in the prescribed d.o.f., for wheels that stand right over a support."""
@@ -39,11 +49,10 @@ class Reactions:
         number = np.full(system.size, -1, dtype=np.int64)
         number[system.prescribed] = np.arange(len(system.prescribed))
         result = []
-        lines = [point.line for _, _, point, _ in crossing.train.contacts]
+        lines = crossing.contact_lines
         for line in dict.fromkeys(lines):
             path = crossing.structure.line(line)
-            if self.plan.settings.footprint > 0.0:
-                path = path.spread(self.plan.settings.footprint)
+            path = self.plan.settings.under_wheels(path)
             wheels = np.array([i for i, name in enumerate(lines) if name == line], dtype=np.int64)
             result.append((wheels, path.renumbered(number)))
         return result
@@ -78,6 +87,9 @@ class Reactions:
         for vector, factor in self._loads:
             reaction -= factor(times)[:, None] * vector
         reaction += self._carried(positions, forces)
+        inner = self.inner(len(steps)) if self.inner is not None else None
+        if inner is not None:
+            reaction += inner
         return np.asarray(reaction)
 
     def _filtered(self, steps: IntArray, momentum: FloatArray) -> FloatArray:
@@ -86,11 +98,21 @@ class Reactions:
             return momentum.copy()
         result = np.empty_like(momentum)
         for i, step in enumerate(steps):
-            self._inertia = (
-                momentum[i] if step == 0 else (momentum[i] + alpha * self._inertia) / (1.0 + alpha)
-            )
+            fresh = step == 0 or int(step) in self.restarted
+            if int(step) - 1 in self.released:
+                self._inertia = self._momentum(int(step) - 1)
+            self._inertia = momentum[i] if fresh else (momentum[i] + alpha * self._inertia) / (1.0 + alpha)
             result[i] = self._inertia
         return result
+
+    def _momentum(self, step: int) -> FloatArray:
+        """Inertia forces (n_P,) of accelerations that were set anew."""
+        system = self.plan.crossing.structure.system
+        time = self.plan.times_of(np.array([step]))
+        moved = np.zeros(len(system.prescribed))
+        for j in self.plan.moving:
+            moved[j] = system.motions[j].acceleration(time)[0]
+        return np.asarray(self.released[step][0][self.free_dofs] @ self._M + system.partition.M_PP @ moved)
 
     def _carried(self, positions: FloatArray, forces: FloatArray) -> FloatArray:
         """D_PX X: wheel loads that go straight into the supports."""
@@ -103,3 +125,7 @@ class Reactions:
             for support in path.path_dofs.tolist():
                 total[:, support] += ((dofs == support) * weights * forces[:, near, None]).sum(axis=(1, 2))
         return total
+
+
+def _operand(matrix: sp.csr_array) -> FloatArray | sp.csr_array:
+    return matrix.toarray() if matrix.shape[0] * matrix.shape[1] <= _DENSE_UP_TO else matrix

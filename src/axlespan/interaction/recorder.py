@@ -8,16 +8,19 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+import scipy.sparse as sp
 
 from axlespan.dynamics.integrator import State
 from axlespan.errors import AnalysisError, Outcome
 from axlespan.interaction.envelopes import EnvelopeMonitor
 from axlespan.interaction.fields import FieldWatcher
+from axlespan.interaction.line_histories import LineHistories
 from axlespan.interaction.monitors import BalanceMonitor, CompatibilityMonitor, EnergyMonitor, TensionMonitor
 from axlespan.interaction.plan import Plan
 from axlespan.interaction.reactions import Reactions
 from axlespan.interaction.result import Result
 from axlespan.interaction.section_forces import SectionHistories
+from axlespan.interaction.sensors import as_weights
 from axlespan.interaction.settings import DAMPED_ALPHA
 from axlespan.interaction.stress_histories import StressHistories
 from axlespan.interaction.tape import LaneTape
@@ -61,9 +64,16 @@ class Recorder:
         self.fields = FieldWatcher(plan)
         self.watchers = Watchers([self.energy, self.fields, *watchers])
         self.sections, self.stresses = SectionHistories(plan), StressHistories(plan)
-        self.envelopes = EnvelopeMonitor(plan)
-        self._keepers: tuple[Keeper, ...] = (self.sections, self.stresses, self.envelopes)
+        self.envelopes, self.line = EnvelopeMonitor(plan), LineHistories(plan)
+        self._keepers: tuple[Keeper, ...] = (self.sections, self.stresses, self.envelopes, self.line)
         self.balance, self.tension = BalanceMonitor(plan, self.reactions.paths), TensionMonitor(plan)
+        # Steps at which a wheel landed, or after which one let go, with what was set anew: see the balance monitor.
+        self.restarted: dict[int, float] = {}
+        self.reactions.restarted = self.balance.restarted = self.energy.restarted = self.restarted
+        self.released: dict[int, tuple[FloatArray, float]] = {}
+        self.reactions.released = self.balance.released = self.energy.released = self.released
+        self.more_checks: Callable[[], Mapping[str, Any]] | None = None
+        self.more_facts: Callable[[], Mapping[str, Any]] | None = None
         n_sensor = len(self._sensor_dofs)
         self.histories = Histories(
             np.zeros((n_kept, n_contact)),
@@ -80,10 +90,8 @@ class Recorder:
         self.finite = True
 
     def _sensors(self) -> tuple[IntArray, FloatArray]:
-        positions = np.array(list(self.plan.settings.sensors.values()), float)
-        if not len(positions):
-            return np.zeros((0, 1), dtype=np.int64), np.zeros((0, 1))
-        return self.plan.sensor_path.weights(positions)
+        self._sensor_rows = self.plan.sensor_rows()
+        return as_weights(sp.csr_array(self._sensor_rows[:, self.plan.crossing.structure.system.free]))
 
     # --- during the run ----------------------------------------------------------------------
 
@@ -129,7 +137,7 @@ class Recorder:
     def _divergence(self, step: int, forces: FloatArray, motion: FloatArray) -> AnalysisError:
         time = step * self.plan.settings.time_step
         force = np.abs(np.nan_to_num(forces, nan=np.inf))
-        where = f"contact {self.plan.crossing.train.contact_names[int(np.argmax(force))]}"
+        where = f"contact {self.plan.crossing.contact_names[int(np.argmax(force))]}"
         if len(motion):
             largest = int(np.argmax(np.abs(np.nan_to_num(motion, nan=np.inf))))
             where += f", d.o.f. {self.plan.fleet.dof_names[largest]}"
@@ -150,6 +158,8 @@ class Recorder:
         reactions = self.reactions.of(steps, values[:, :, n_sensor:], positions, tape.forces)
         self.balance.look(steps, tape.sums, reactions, positions, tape.forces)
         self.tension.look(steps, positions, tape.forces)
+        for step in [step for step in self.released if step < steps[-1]]:
+            del self.released[step]
         for keeper, at in zip(self._keepers, self._more, strict=True):
             keeper.look(steps, tape.near[:, :, at], positions, tape.forces)
         kept = np.flatnonzero(steps % self.every == 0)
@@ -168,9 +178,7 @@ class Recorder:
         result = np.zeros((3, len(steps), len(self._sensor_dofs)))
         if len(plan.moving) and len(self._sensor_dofs):
             times = plan.times_of(steps)
-            rows = plan.sensor_path_moving.rows(
-                np.array(list(plan.settings.sensors.values())), len(plan.moving)
-            )
+            rows = self._sensor_rows[:, plan.crossing.structure.system.prescribed[plan.moving]]
             for i, name in enumerate(("value", "velocity", "acceleration")):
                 motions = [
                     getattr(plan.crossing.structure.system.motions[j], name)(times) for j in plan.moving
@@ -188,7 +196,7 @@ class Recorder:
         return Result(
             time=plan.times_of(np.arange(n) * self.every),
             sensor=tuple(plan.settings.sensors),
-            contact=plan.crossing.train.contact_names,
+            contact=plan.crossing.contact_names,
             vehicle_dof=plan.fleet.dof_names,
             support=plan.crossing.structure.system.support_names if plan.settings.reactions else (),
             sensor_displacement=h.sensor["displacement"][:n],
@@ -206,15 +214,16 @@ class Recorder:
             **self.sections.histories(n),
             stress=self.stresses.names,
             stress_history=self.stresses.histories(n),
+            **self.line.histories(n),
             envelopes=self.envelopes.envelopes(),
             fields=self.fields.fields(self.completed),
             outcome=outcome,
             checks=self._checks(),
-            facts={**facts, **self.counts, "completed_steps": self.completed, "notes": tuple(self.notes)},
+            facts={**facts, **self.counts, **_of(self.more_facts), "completed_steps": self.completed, "notes": tuple(self.notes)},
         )
 
     def _checks(self) -> dict[str, Any]:
-        tension, names = self.tension, self.plan.crossing.train.contact_names
+        tension, names = self.tension, self.plan.crossing.contact_names
 
         def by_contact(values: FloatArray) -> dict[str, float]:
             return dict(zip(names, values.tolist(), strict=True))
@@ -231,4 +240,9 @@ class Recorder:
             "smallest_contact_force": by_contact(tension.smallest),
             "smallest_contact_force_time": by_contact(tension.smallest_at),
             "static_contact_force": by_contact(self.plan.fleet.weight),
+            **_of(self.more_checks),
         }
+
+
+def _of(source: Callable[[], Mapping[str, Any]] | None) -> Mapping[str, Any]:
+    return {} if source is None else source()

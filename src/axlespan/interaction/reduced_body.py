@@ -1,7 +1,12 @@
-"""The structure in time, in the coordinates of a reduced basis.
+r"""The structure in time, in the coordinates of a reduced basis.
 
 u = V q throughout: in the free response, under the wheels and in the contact system. The basis holds the static
 shapes of all loads on the path, so nothing is left of the static compliance there to be added.
+
+Shapes of high frequency are the dents under the wheels. A time step resolves a shape while ω Δt < 2; one above
+that would ring undamped near the highest frequency that the step can show, which is no motion of the structure.
+Such shapes follow their forces at once, without inertia and damping, and add nothing to velocities and
+accelerations.
 """
 
 from __future__ import annotations
@@ -21,18 +26,36 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 
-def reduced_matrices(matrices: Matrices, basis: ReducedBasis) -> Matrices:
-    """Stiffness, mass and damping in the coordinates of the basis."""
+class Coordinates(State):
+    """A state in the coordinates of a basis, which may be as many as the d.o.f."""
+
+
+# Shapes with ω Δt beyond this are not resolved by the time step.
+_RESOLVED = 2.0
+
+
+def resolved_shapes(basis: ReducedBasis, time_step: float) -> npt.NDArray[np.bool_]:
+    """Which shapes (m,) a time step [s] resolves."""
+    return np.asarray(basis.angular_frequencies * time_step < _RESOLVED)
+
+
+def reduced_matrices(
+    matrices: Matrices, basis: ReducedBasis, resolved: npt.NDArray[np.bool_] | None = None
+) -> Matrices:
+    """Stiffness, mass and damping in the coordinates of the basis; only resolved shapes have the latter two."""
     V = basis.vectors
+    moves = np.ones(basis.size) if resolved is None else resolved.astype(float)
     stiffness = sp.csr_array(sp.diags_array(basis.angular_frequencies**2))
-    mass = sp.csr_array(sp.eye_array(basis.size))
+    mass = sp.csr_array(sp.diags_array(moves))
     damping = None
     if matrices.C is not None:
-        dense = V.T @ np.asarray(matrices.C @ V)
+        dense = moves[:, None] * (V.T @ np.asarray(matrices.C @ V)) * moves
         scale = np.abs(dense).max()
         damping = sp.csr_array(np.where(np.abs(dense) > 1e-12 * scale, 0.5 * (dense + dense.T), 0.0))
     low_rank = matrices.C_low_rank
-    reduced = None if low_rank is None else LowRank(V.T @ low_rank.vectors, low_rank.coefficients)
+    reduced = None
+    if low_rank is not None:
+        reduced = LowRank(moves[:, None] * (V.T @ low_rank.vectors), low_rank.coefficients)
     return Matrices(stiffness, mass, damping, reduced)
 
 
@@ -48,6 +71,12 @@ class ReducedColumns(PathColumns):
         scale = integrator.weight_c * integrator.u_from_a
         block = scale * (shapes.T @ integrator.factor.solve(shapes.copy()))
         self.compliance = 0.5 * (block + block.T)
+        self.offset = self.low = np.zeros_like(self.held)
+        self.high = np.full_like(self.held, len(self.held))
+
+    def for_others(self) -> PathColumns:
+        """Nothing changes here: crossings may share it."""
+        return self
 
     def hold(self, dofs: IntArray) -> None:
         """All columns are at hand."""
@@ -56,9 +85,18 @@ class ReducedColumns(PathColumns):
 class PreparedReduced(PreparedStructure):
     """A structure in a reduced basis; the full operator is not needed any more."""
 
-    def __init__(self, matrices: Matrices, basis: ReducedBasis, method: Alpha, time_step: float) -> None:
-        self.basis, self._mass = basis, matrices.M
-        self.integrator = Integrator(reduced_matrices(matrices, basis), method, time_step)
+    def __init__(
+        self,
+        matrices: Matrices,
+        basis: ReducedBasis,
+        method: Alpha,
+        time_step: float,
+        *,
+        all_with_inertia: bool = False,
+    ) -> None:
+        self.basis, self._stiffness, self._mass = basis, matrices.K, matrices.M
+        self.resolved = resolved_shapes(basis, time_step) | all_with_inertia
+        self.integrator = Integrator(reduced_matrices(matrices, basis, self.resolved), method, time_step)
         self.columns = ReducedColumns(self.integrator, basis)
 
     def body(self, states: list[State], loads: list[FloatArray]) -> StructureBody:
@@ -67,10 +105,13 @@ class PreparedReduced(PreparedStructure):
         return ReducedStructureBody(self, own, loads)
 
     def _in_basis(self, state: State) -> State:
-        if state.values.shape[1] == self.basis.size:
+        if isinstance(state, Coordinates):
             return state
-        weighted = np.asarray(self._mass @ state.values.T)
-        return State(np.ascontiguousarray((self.basis.vectors.T @ weighted).T))
+        # Displacements by strain energy, which also holds for shapes without inertia; rates by kinetic energy.
+        result = (self.basis.vectors.T @ np.asarray(self._mass @ state.values.T)).T
+        forces = self.basis.vectors.T @ np.asarray(self._stiffness @ state.u)
+        result[0] = forces / self.basis.angular_frequencies**2
+        return Coordinates(np.ascontiguousarray(result))
 
     def project(self, vectors: FloatArray) -> FloatArray:
         """Vᵀ F of forces (n,) or (n, k)."""
@@ -88,6 +129,8 @@ class ReducedStructureBody(StructureBody):
         self._basis = prepared.basis
         super().__init__(prepared, states, path_loads)
         self._held: IntArray | None = None
+        self._at_once = np.flatnonzero(~prepared.resolved)
+        self.state.values[1:, self._at_once] = 0.0
 
     def _shapes(self) -> FloatArray:
         """V at the held d.o.f. (n_held, m)."""
@@ -96,9 +139,18 @@ class ReducedStructureBody(StructureBody):
             self._held_shapes = np.ascontiguousarray(self._basis.vectors[self._held])
         return self._held_shapes
 
+    def lane(self, lane: int) -> State:
+        """The coordinates of one crossing; a view if it is the only one."""
+        return Coordinates(super().lane(lane).values)
+
     def full(self, lane: int) -> State:
         """The state of one crossing in all d.o.f."""
         return State(self.lane(lane).values @ self._basis.vectors.T)
+
+    def take(self, coupled: FloatArray | None, known: FloatArray | None) -> None:
+        """Take the loads, and complete the step; shapes that follow at once have no rates to go on with."""
+        super().take(coupled, known)
+        self.state.values[1:, self._at_once] = 0.0
 
     def _add_loads(self, force: FloatArray, known: FloatArray | None) -> None:
         if self.integrator.weight_p:

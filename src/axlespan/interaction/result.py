@@ -45,6 +45,10 @@ def _none() -> FloatArray:
     return np.zeros((0, 0))
 
 
+def _empty() -> FloatArray:
+    return np.zeros(0)
+
+
 @dataclass(frozen=True, eq=False)
 class Result:
     """What a crossing gave, at the times kept."""
@@ -73,6 +77,12 @@ class Result:
     section_torsion: FloatArray = field(default_factory=_none)  # (n_time, n_section) [N m]
     stress: tuple[str, ...] = ()  # sensor.component
     stress_history: FloatArray = field(default_factory=_none)  # (n_time, n_stress) [N/m^2, N/m, N m/m]
+    line_position: FloatArray = field(default_factory=_empty)  # (n_line_point,) along the deck [m]
+    line_end: FloatArray = field(default_factory=_empty)  # (2,) ends of the deck's line [m]
+    line_displacement: FloatArray = field(default_factory=_none)  # (n_time, n_line_point) [m]
+    line_acceleration: FloatArray = field(default_factory=_none)  # (n_time, n_line_point) [m/s^2]
+    line_twist: FloatArray = field(default_factory=_none)  # (n_time, n_line_point or 0) over 3 m [m]
+    line_slope: FloatArray = field(default_factory=_none)  # (n_time, 2) dw/ds at the ends [rad]
     envelopes: Envelopes | None = None  # extremes along the line
     fields: Fields | None = None  # the whole structure at chosen times
 

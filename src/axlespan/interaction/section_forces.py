@@ -14,6 +14,7 @@ import scipy.sparse as sp
 
 from axlespan.elements.beam_sections import QUANTITIES
 from axlespan.interaction.plan import Plan
+from axlespan.interaction.sensors import by_line
 from axlespan.running.path import PolynomialPath
 from axlespan.running.sections import BeamSections
 
@@ -26,13 +27,19 @@ _OVER = 1e-12
 
 
 class SectionForces:
-    """Moment, shear, normal force and torsion, or some of them, at sections of the first line."""
+    """Moment, shear, normal force and torsion, or some of them, at sections of a line, that for sensors by default."""
 
     def __init__(
-        self, plan: Plan, segments: IntArray, xi: FloatArray, quantities: Sequence[str] = QUANTITIES
+        self,
+        plan: Plan,
+        segments: IntArray,
+        xi: FloatArray,
+        quantities: Sequence[str] = QUANTITIES,
+        line: str | None = None,
     ) -> None:
         self._plan = plan
-        sections = BeamSections.at(plan.crossing.structure, segments, xi)
+        name = line or plan.crossing.structure.sensor_line
+        sections = BeamSections.at(plan.crossing.structure, segments, xi, name)
         system = plan.crossing.structure.system
         chosen = np.array([QUANTITIES.index(name) for name in quantities], dtype=np.int64)
         keep = (np.arange(sections.n_section)[:, None] * len(QUANTITIES) + chosen).ravel()
@@ -49,15 +56,14 @@ class SectionForces:
 
     def _wheels(self, sections: BeamSections, number: IntArray) -> list[tuple[IntArray, PolynomialPath]]:
         """Wheels (n_wheel,) of each line, and their share in the section forces by their position."""
-        lines = [point.line for _, _, point, _ in self._plan.crossing.train.contacts]
+        lines = self._plan.crossing.contact_lines
         result = []
         for line in dict.fromkeys(lines):
             path = sections.influence(line)
             if path is not None:
                 path = path.renumbered(number)
                 wheels = np.array([i for i, name in enumerate(lines) if name == line], dtype=np.int64)
-                footprint = self._plan.settings.footprint
-                result.append((wheels, path.spread(footprint) if footprint > 0.0 else path))
+                result.append((wheels, self._plan.settings.under_wheels(path)))
         return result
 
     def of(self, steps: IntArray, near: FloatArray, positions: FloatArray, forces: FloatArray) -> FloatArray:
@@ -117,21 +123,25 @@ class SectionHistories:
 
     def __init__(self, plan: Plan) -> None:
         self.names, self._every = plan.settings.section_forces, plan.settings.every
-        self._forces: SectionForces | None = None
-        self.free_dofs: IntArray = np.empty(0, dtype=np.int64)
-        if self.names:
-            places = np.array([plan.settings.sensors[name] for name in self.names], float)
-            segments, xi = plan.crossing.structure.line().locate(places)
-            self._forces = SectionForces(plan, segments, xi)
-            self.free_dofs = self._forces.free_dofs
+        self._groups: list[tuple[IntArray, SectionForces]] = []
+        structure, settings = plan.crossing.structure, plan.settings
+        for line, (numbers, places) in by_line(
+            structure, self.names, settings.sensors, settings.sensor_lines
+        ).items():
+            segments, xi = structure.line(line).locate(places)
+            self._groups.append((numbers, SectionForces(plan, segments, xi, line=line)))
+        none: IntArray = np.empty(0, dtype=np.int64)
+        self.free_dofs = np.unique(np.concatenate([none, *(group.free_dofs for _, group in self._groups)]))
         n_kept = plan.settings.steps // self._every + 1
         self._table = np.zeros((n_kept, len(self.names), len(QUANTITIES)))
 
     def look(self, steps: IntArray, near: FloatArray, positions: FloatArray, forces: FloatArray) -> None:
         """Look at consecutive steps; see :meth:`SectionForces.of`."""
-        if self._forces is not None:
-            kept = np.flatnonzero(steps % self._every == 0)
-            self._table[steps[kept] // self._every] = self._forces.of(steps, near, positions, forces)[kept]
+        kept = np.flatnonzero(steps % self._every == 0)
+        for numbers, group in self._groups:
+            own = np.searchsorted(self.free_dofs, group.free_dofs)
+            values = group.of(steps, near[:, :, own], positions, forces)[kept]
+            self._table[(steps[kept] // self._every)[:, None], numbers] = values
 
     def histories(self, n: int) -> dict[str, FloatArray]:
         """The first n kept (n, n_section), by their names in a result."""

@@ -7,11 +7,23 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from axlespan.contact.laws import Law, Rigid, law_of
 from axlespan.dynamics.alpha import Alpha
 from axlespan.dynamics.reduction import ReducedBasis
 from axlespan.errors import InputError
 from axlespan.interaction.crossing import Crossing
+from axlespan.interaction.line_points import line_positions
 from axlespan.interaction.outputs import envelope_names, field_steps, sensor_names
+from axlespan.interaction.sensors import SensorPlace, split_places
+from axlespan.running.path import PolynomialPath
+from axlespan.running.structure import RAIL_LINE
+from axlespan.model.materials import require_positive
+
+#: N12's law of contact.
+RIGID = Rigid()
+
+#: Time [s] after which a vehicle with all wheels in the air is lost, when none is given.
+LOST_AFTER = 0.5
 
 #: Ways of coupling vehicle and structure.
 COUPLINGS = ("direct", "iterative", "refactored", "literal")
@@ -21,6 +33,9 @@ DAMPED_ALPHA = -0.1
 
 # Above this α there is too little numerical damping for wheels with mass.
 _LITTLE_DAMPING = -0.03
+
+# Largest spacing of sleepers that share an axle load [m].
+_WIDEST_SLEEPERS = 3.0
 
 #: Largest footprint [m] and its largest share of the running line, when none is given.
 FOOTPRINT, FOOTPRINT_SHARE = 1.2, 0.02
@@ -51,10 +66,12 @@ class Settings:
     steps: int
     method: Alpha
     footprint: float = 0.0  # [m]
+    sleepers: float = 0.0  # spacing of three sleepers that share an axle load, 0 for none [m]
     coupling: str = "direct"
     solver: str = "auto"
     every: int = 1
     sensors: Mapping[str, float] = field(default_factory=dict)  # name -> position [m]
+    sensor_lines: Mapping[str, str] = field(default_factory=dict)  # name -> line on which it stands
     reactions: bool = True  # whether support reactions are kept
     iteration: Iteration = field(default_factory=Iteration)
     fields: Sequence[int] = ()  # time indices of whole fields
@@ -64,7 +81,16 @@ class Settings:
     basis: str | ReducedBasis = "full"
     basis_modes: int = 0  # beside the Ritz vectors of a basis that is built here
     basis_tolerance: float | None = None  # of the estimated error of a basis that is built here [-]
+    line_points: tuple[float, ...] = ()  # positions along the deck that are kept [m]
     notes: Sequence[str] = ()  # what was chosen by default, and warnings
+    contact: Law = RIGID  # of wheels that have no law of their own
+    lost_after: float = LOST_AFTER  # time for which all wheels of a vehicle may be in the air [s]
+
+    def under_wheels(self, path: PolynomialPath) -> PolynomialPath:
+        """A line as wheels touch it: shared among sleepers, under a footprint."""
+        if self.sleepers > 0.0:
+            path = path.shared(self.sleepers)
+        return path.spread(self.footprint) if self.footprint > 0.0 else path
 
 
 def settings_for(
@@ -74,10 +100,11 @@ def settings_for(
     steps: int,
     method: Alpha | None = None,
     footprint: float | None = None,
+    sleepers: float | None = None,
     coupling: str = "direct",
     solver: str = "auto",
     every: int = 1,
-    sensors: Mapping[str, float] | None = None,
+    sensors: Mapping[str, SensorPlace] | None = None,
     reactions: bool = True,
     iteration: Iteration | None = None,
     fields: Sequence[float] | int | None = None,
@@ -87,6 +114,9 @@ def settings_for(
     basis: str | ReducedBasis = "full",
     basis_modes: int = 0,
     basis_tolerance: float | None = None,
+    line_points: int | Sequence[float] | None = None,
+    contact: str | Law = RIGID,
+    lost_after: float = LOST_AFTER,
 ) -> Settings:
     """Check the settings of a run and fill in what the user left to us.
 
@@ -102,6 +132,7 @@ def settings_for(
     notes: list[str] = []
     chosen = _method(crossing, method, notes)
     length = _footprint(crossing, footprint, notes)
+    places, lines = split_places(crossing.structure, sensors)
     if basis != "full" and (section_forces or set(envelopes or ()) & {"moment", "shear"}):
         notes.append(
             "warning: in a reduced basis section forces lack local bending, shear most; compare with basis: full"
@@ -111,10 +142,12 @@ def settings_for(
         int(steps),
         chosen,
         length,
+        _sleepers(crossing, sleepers),
         coupling,
         solver,
         int(every),
-        dict(sensors or {}),
+        places,
+        lines,
         bool(reactions),
         iteration or Iteration(),
         field_steps(fields, float(time_step), int(steps)),
@@ -124,7 +157,10 @@ def settings_for(
         basis,
         int(basis_modes),
         basis_tolerance,
+        line_positions(crossing.structure, line_points),
         tuple(notes),
+        contact=law_of(contact),
+        lost_after=require_positive(lost_after, "lost_after"),
     )
 
 
@@ -151,7 +187,7 @@ def _check_counts(time_step: float, steps: int, every: int) -> None:
 
 
 def _method(crossing: Crossing, method: Alpha | None, notes: list[str]) -> Alpha:
-    vehicles = [item.vehicle for item in crossing.train.placements]
+    vehicles = [item.vehicle for item in crossing.placements]
     massive = any(vehicle.has_massive_contacts for vehicle in vehicles)
     dashpot = any(vehicle.has_dashpot_contacts for vehicle in vehicles)
     why = "wheels have mass" if massive else "a dashpot ends at a massless contact point"
@@ -170,6 +206,23 @@ def _method(crossing: Crossing, method: Alpha | None, notes: list[str]) -> Alpha
     return method
 
 
+def _sleepers(crossing: Crossing, spacing: float | None) -> float:
+    """Spacing of the sleepers that share an axle load."""
+    if spacing is None:
+        return 0.0
+    if not 0.0 < spacing <= _WIDEST_SLEEPERS:
+        raise InputError(
+            f"must be positive and at most {_WIDEST_SLEEPERS:g} m", field="sleepers", value=spacing, fix="Use 0.6 m"
+        )
+    if RAIL_LINE in crossing.structure.lines:
+        raise InputError(
+            "must be left out: the structure has a track, whose rails spread the loads",
+            field="sleepers",
+            value=spacing,
+        )
+    return float(spacing)
+
+
 def _footprint(crossing: Crossing, footprint: float | None, notes: list[str]) -> float:
     length = crossing.structure.length
     if footprint is not None:
@@ -180,8 +233,15 @@ def _footprint(crossing: Crossing, footprint: float | None, notes: list[str]) ->
                 value=footprint,
             )
         return float(footprint)
-    if not any(item.vehicle.has_massive_contacts for item in crossing.train.placements):
+    if not any(item.vehicle.has_massive_contacts for item in crossing.placements):
         return 0.0
+    if RAIL_LINE in crossing.structure.lines:
+        chosen = float(np.median(np.diff(crossing.structure.line(RAIL_LINE).breaks)))
+        notes.append(
+            f"footprint of {chosen:.3g} m by default, the length of the rail's elements: a wheel with mass does not "
+            "feel where they meet"
+        )
+        return chosen
     chosen = min(FOOTPRINT, FOOTPRINT_SHARE * length)
     notes.append(
         f"footprint of {chosen:.3g} m by default, because wheels have mass: a kink in the line, as at the end of a bare span, "

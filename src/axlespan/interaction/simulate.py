@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
+from itertools import zip_longest
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from axlespan.contact.laws import Law
 from axlespan.dynamics.alpha import Alpha
 from axlespan.dynamics.reduction import ReducedBasis, reduced_basis
 from axlespan.errors import AnalysisError, InputError, Outcome
@@ -18,21 +20,26 @@ from axlespan.interaction.crossing import Crossing
 from axlespan.interaction.iterative import IterativeCoupling
 from axlespan.interaction.literal import couple_literally
 from axlespan.interaction.march import couple_directly
+from axlespan.interaction.nonlinear import begin_nonlinear, watch
 from axlespan.interaction.plan import Plan, plan_for
 from axlespan.interaction.recorder import Recorder
 from axlespan.interaction.reduced_body import PreparedReduced
-from axlespan.interaction.reduction_error import ReductionError
+from axlespan.interaction.reduction_error import ReductionError, ringing_runs
 from axlespan.interaction.refactored import couple_by_refactoring
 from axlespan.interaction.result import Result
-from axlespan.interaction.settings import Iteration, Settings, settings_for
+from axlespan.interaction.sensors import SensorPlace
+from axlespan.interaction.settings import LOST_AFTER, RIGID, Iteration, Settings, settings_for
 from axlespan.interaction.start import StartFactors, start_of
 from axlespan.running.structure import Structure
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-# Blocks of Ritz vectors and cut-offs of the bases that are tried, from lean to rich.
-_BASES = ((3, 1e-3), (4, 1e-4), (5, 1e-5), (6, 1e-6))
+# Blocks of Ritz vectors and cut-offs of the bases that are tried, from lean to rich; and the usual one.
+_BASES = ((2, 1e-2), (2, 1e-3), (3, 1e-4), (4, 1e-5), (6, 1e-6))
+_USUAL_BASIS = (3, 1e-4)
+# A richer basis is of no use when less than this share of the error comes from the basis.
+_SHARE_OF_BASIS = 0.2
 
 
 def _couple(coupling: str) -> tuple[Couple, bool]:
@@ -50,10 +57,11 @@ def simulate(
     time_step: float,
     steps: int,
     method: Alpha | None = None,
-    sensors: Mapping[str, float] | None = None,
+    sensors: Mapping[str, SensorPlace] | None = None,
     reactions: bool = True,
     coupling: str = "direct",
     footprint: float | None = None,
+    sleepers: float | None = None,
     solver: str = "auto",
     every: int = 1,
     iteration: Iteration | None = None,
@@ -63,6 +71,9 @@ def simulate(
     envelopes: Sequence[str] | None = None,
     basis: str | ReducedBasis = "full",
     basis_tolerance: float | None = None,
+    line_points: int | Sequence[float] | None = None,
+    contact: str | Law = RIGID,
+    lost_after: float = LOST_AFTER,
     progress: Callable[[int], None] | None = None,
 ) -> Result:
     """Simulate a crossing.
@@ -79,7 +90,8 @@ def simulate(
         Parameters of the alpha method. By default α = 0, or α = -0.1 for wheels that have mass (or a
         dashpot that ends at a massless contact point).
     sensors : mapping of name to position, optional
-        Positions [m] on the first running line whose vertical motion is kept.
+        Positions [m] whose vertical motion is kept: on the deck where there is a track, else on the first
+        running line; ``("rail", 12.5)`` names another line.
     reactions : bool
         Whether support reactions are kept.
     coupling : {"direct", "iterative", "refactored", "literal"}
@@ -87,6 +99,9 @@ def simulate(
     footprint : float, optional
         Length [m] over which a wheel's contact is spread along the line. By default zero for massless
         wheels, and for wheels with mass 1.2 m or 2 % of the line, whichever is less.
+    sleepers : float, optional
+        Spacing [m] of three sleepers that share each wheel's force, 25, 50 and 25 %, and move with it
+        (EN 1991-2 6.3.6.1), for structures without track.
     solver : str
         Kind of factorization: "auto", "banded", "superlu", "pardiso", "cholmod".
     every : int
@@ -103,6 +118,13 @@ def simulate(
     envelopes : sequence of str, optional
         Quantities whose extremes along the line are kept: "moment", "shear", "normal", "torsion",
         "deflection", "acceleration".
+    line_points : int or sequence of float, optional
+        So many positions along the deck (the line called "deck", else the first one), or the positions [m],
+        at which displacement and acceleration are kept, with the slope of the line's two ends.
+    contact : {"rigid", "unilateral", "hertz", "linear-spring"} or Law
+        Law of the wheels that have none of their own, see :mod:`axlespan.contact.laws`.
+    lost_after : float
+        Time [s] for which all wheels of a vehicle may be in the air before the run stops.
     basis : {"full", "reduced"} or ReducedBasis
         All d.o.f. of the structure, or a reduced basis, which is built here or given (see
         :func:`reduce_structure`). The result's facts hold its size and an estimate of its error.
@@ -128,6 +150,7 @@ def simulate(
         steps=steps,
         method=method,
         footprint=footprint,
+        sleepers=sleepers,
         coupling=coupling,
         solver=solver,
         every=every,
@@ -140,6 +163,9 @@ def simulate(
         envelopes=envelopes,
         basis=basis,
         basis_tolerance=basis_tolerance,
+        line_points=line_points,
+        contact=contact,
+        lost_after=lost_after,
     )
     return run_plan(plan_for(crossing, settings), progress)
 
@@ -150,8 +176,9 @@ def simulate_many(
     time_step: float,
     steps: int | Sequence[int],
     method: Alpha | None = None,
-    sensors: Mapping[str, float] | None = None,
+    sensors: Mapping[str, SensorPlace] | None = None,
     footprint: float | None = None,
+    sleepers: float | None = None,
     solver: str = "auto",
     every: int = 1,
     fields: Sequence[float] | int | None = None,
@@ -160,6 +187,9 @@ def simulate_many(
     envelopes: Sequence[str] | None = None,
     basis: str | ReducedBasis = "full",
     basis_tolerance: float | None = None,
+    line_points: int | Sequence[float] | None = None,
+    contact: str | Law = RIGID,
+    lost_after: float = LOST_AFTER,
 ) -> list[Result]:
     """Simulate several crossings of one structure side by side, from one factorization.
 
@@ -169,9 +199,9 @@ def simulate_many(
         All with the same ``structure``; trains, speeds, starts and irregularities may differ.
     steps : int or sequence of int
         Number of time steps, one for all or one each.
-    time_step, method, sensors, footprint, solver, every, fields, section_forces, stresses, envelopes, basis,
-    basis_tolerance
-        As for :func:`simulate`. The defaults of method and footprint follow from all trains together.
+    time_step : float
+        [s]; this and all that is not named here as for :func:`simulate`. The defaults of method and footprint
+        follow from all trains together.
 
     Returns
     -------
@@ -204,6 +234,7 @@ def simulate_many(
             method=chosen,
             sensors=sensors,
             footprint=footprint,
+            sleepers=sleepers,
             solver=solver,
             every=every,
             fields=fields,
@@ -212,6 +243,9 @@ def simulate_many(
             envelopes=envelopes,
             basis=basis,
             basis_tolerance=basis_tolerance,
+            line_points=line_points,
+            contact=contact,
+            lost_after=lost_after,
         )
 
     pairs = list(zip(crossings, counts, strict=True))
@@ -236,6 +270,8 @@ def run_plan(plan: Plan, progress: Callable[[int], None] | None = None) -> Resul
 def run_plans(plans: Sequence[Plan], progress: Callable[[int], None] | None = None) -> list[Result]:
     """Compute compiled crossings of one structure side by side; failed ones are among the results."""
     settings = plans[0].settings
+    if len(plans) > 1 and any(plan.is_nonlinear for plan in plans):
+        return [result for plan in plans for result in run_plans([plan], progress)]
     if settings.basis == "full":
         return _driven(plans, progress, prepare(plans), None)
     if isinstance(settings.basis, ReducedBasis):
@@ -246,7 +282,8 @@ def run_plans(plans: Sequence[Plan], progress: Callable[[int], None] | None = No
 def _refined(plans: Sequence[Plan], progress: Callable[[int], None] | None) -> list[Result]:
     """Compute with richer and richer bases until the estimated error is within the tolerance."""
     results: list[Result] = []
-    for blocks, cutoff in _BASES:
+    tolerance = plans[0].settings.basis_tolerance
+    for blocks, cutoff in (_USUAL_BASIS,) if tolerance is None else _BASES:
         begun = time.perf_counter()
         basis = reduced_basis(
             plans[0].structure.K,
@@ -261,8 +298,8 @@ def _refined(plans: Sequence[Plan], progress: Callable[[int], None] | None) -> l
         seconds = time.perf_counter() - begun
         results = _driven(plans, progress, _prepare_reduced(plans, basis), basis, {"basis_time": seconds})
         worst = max(float(result.facts["reduction_error"]) for result in results)
-        tolerance = plans[0].settings.basis_tolerance
-        if tolerance is None or worst <= tolerance:
+        by_basis = max(float(result.facts["reduction_error_of_basis"]) for result in results)
+        if tolerance is None or worst <= tolerance or by_basis < _SHARE_OF_BASIS * worst:
             break
     return results
 
@@ -275,26 +312,30 @@ def _driven(
     facts: Mapping[str, Any] | None = None,
 ) -> list[Result]:
     begun = time.perf_counter()
-    errors = [None if basis is None else ReductionError(plan, basis) for plan in plans]
+    errors = [] if basis is None else [ReductionError(plan, basis) for plan in plans]
     factors = StartFactors(plans[0])
+    nonlinear = begin_nonlinear(plans[0], factors) if plans[0].is_nonlinear else None  # a single crossing then
+    starts = [start_of(plan, factors) for plan in plans] if nonlinear is None else [nonlinear[0]]
     recorders = [
-        Recorder(plan, progress, [] if error is None else [error])
-        for plan, error in zip(plans, errors, strict=True)
+        Recorder(plan, progress, [error] if error else []) for plan, error in zip_longest(plans, errors)
     ]
     lanes = [
-        Lane.at_start(plan, start_of(plan, factors), keeper)
-        for plan, keeper in zip(plans, recorders, strict=True)
+        Lane.at_start(plan, start, keeper)
+        for plan, start, keeper in zip(plans, starts, recorders, strict=True)
     ]
     couple, systems = _couple(plans[0].settings.coupling)
+    if nonlinear is not None:
+        couple = nonlinear[1]
+        watch(nonlinear[1], recorders[0])
     drive(lanes, prepared, couple, systems=systems)
+    estimates: list[dict[str, Any]] = [{} for _ in lanes]
+    if basis is not None:
+        ringing = ringing_runs(plans, starts, basis, couple)
+        estimates = [error.facts(samples) for error, samples in zip(errors, ringing, strict=True)]
     common = {**(facts or {}), "wall_time": time.perf_counter() - begun, "side_by_side": len(lanes)}
-    results = []
-    for lane, error in zip(lanes, errors, strict=True):
-        own = dict(common)
-        if error is not None and basis is not None:
-            own |= {"basis_size": basis.size, "reduction_error": error.estimate}
-        results.append(_result(lane, prepared, own))
-    return results
+    return [
+        _result(lane, prepared, common | estimate) for lane, estimate in zip(lanes, estimates, strict=True)
+    ]
 
 
 def _path_dofs(plans: Sequence[Plan]) -> IntArray:
@@ -303,9 +344,15 @@ def _path_dofs(plans: Sequence[Plan]) -> IntArray:
 
 def prepare(plans: Sequence[Plan]) -> PreparedStructure:
     """Factor the structure that the plans share."""
-    settings = plans[0].settings
+    settings, path_dofs = plans[0].settings, _path_dofs(plans)
+    rows = max(plan.rows.n_contact * path.free.dofs.shape[1] for plan in plans for path in plan.rows.paths)
     return PreparedStructure(
-        plans[0].structure, settings.method, settings.time_step, _path_dofs(plans), solver=settings.solver
+        plans[0].structure,
+        settings.method,
+        settings.time_step,
+        path_dofs,
+        loaded=min(rows, len(path_dofs)),
+        solver=settings.solver,
     )
 
 
@@ -320,7 +367,7 @@ def _prepare_reduced(plans: Sequence[Plan], basis: ReducedBasis) -> PreparedRedu
 
 
 def reduce_structure(
-    structure: Structure, *, blocks: int = 3, cutoff: float = 1e-5, modes: int = 0, solver: str = "auto"
+    structure: Structure, *, blocks: int = 3, cutoff: float = 1e-4, modes: int = 0, solver: str = "auto"
 ) -> ReducedBasis:
     """A reduced basis of a structure, for loads on its running lines; see :func:`reduced_basis`.
 
@@ -361,7 +408,7 @@ def _facts(plan: Plan, prepared: PreparedStructure) -> dict[str, Any]:
     factor = prepared.integrator.factor
     return {
         "structure": plan.crossing.structure.name,
-        "train": plan.crossing.train.name,
+        "train": plan.crossing.train_names,
         "line_start": plan.crossing.structure.line().start,
         "line_stop": plan.crossing.structure.line().stop,
         "structure_dofs": plan.structure.size,
@@ -373,6 +420,7 @@ def _facts(plan: Plan, prepared: PreparedStructure) -> dict[str, Any]:
         "beta": plan.settings.method.beta,
         "gamma": plan.settings.method.gamma,
         "footprint": plan.settings.footprint,
+        "sleepers": plan.settings.sleepers,
         "coupling": plan.settings.coupling,
         "solver": factor.name,
         "factor_bytes": int(factor.nbytes),

@@ -44,8 +44,8 @@ class Start:
 
 
 @dataclass(frozen=True, eq=False)
-class _Rows:
-    """Rows of the coupled wheels at time zero, with derivatives along the line."""
+class ContactRows:
+    """Rows of all wheels at a time, with derivatives along the line."""
 
     E: sp.csr_array  # (n_contact, n)
     E1: sp.csr_array
@@ -69,31 +69,31 @@ class StartFactors:
     @cached_property
     def mass(self) -> Factor:
         """Factor of M, with a trace of stiffness where a d.o.f. has no mass."""
-        return _mass_factor(self._plan.structure, self._plan)
+        return mass_factor(self._plan.structure, self._plan)
 
 
 def start_of(plan: Plan, factors: StartFactors | None = None) -> Start:
     """The state at time zero; crossings of one structure may share the factors."""
     factors = factors or StartFactors(plan)
-    rows, fleet = _rows_at_zero(plan), plan.fleet
+    rows, fleet = rows_at(plan), plan.fleet
     n, n_contact = plan.structure.size, len(fleet.weight)
     external = plan.forces.at(0.0) if plan.forces.n_term else np.zeros(n)
     u_s, forces = _static(plan, plan.forces.static(0.0), rows, factors)
-    u_v, forces = _vehicles_at(fleet, forces, rows, u_s)
+    u_v, forces = vehicles_at(fleet, forces, rows, u_s)
     structure, vehicles = State.at_rest((n,)), State.at_rest((fleet.matrices.size,))
     structure.u[:], vehicles.u[:] = u_s, u_v
     x = fleet.coupled
-    speed = float(plan.crossing.motion.speed(np.zeros(1))[0])
+    speed, _ = plan.rows.motion(0.0)
     vehicles.v[fleet.dofs] = (rows.rate + speed * (rows.E1 @ u_s))[x]
     forces = _accelerate(plan, structure, vehicles, external, rows, forces.reshape(n_contact), speed, factors)
     return Start(structure, vehicles, forces, np.asarray(rows.E.T @ forces))
 
 
-def _rows_at_zero(plan: Plan) -> _Rows:
-    zero = np.zeros(1)
-    motion = plan.crossing.motion
-    positions = plan.rows.positions(zero)
-    speed, acceleration = float(motion.speed(zero)[0]), float(motion.acceleration(zero)[0])
+def rows_at(plan: Plan, time: float = 0.0) -> ContactRows:
+    """The rows of all wheels at a time, with derivatives along the line."""
+    now = np.array([time])
+    positions = plan.rows.positions(now)
+    speed, acceleration = plan.rows.motion(time)
     wheels = np.arange(plan.rows.n_contact)
     blocks = [plan.rows.rows(positions, wheels, derivative) for derivative in range(3)]
     n = plan.structure.size
@@ -108,17 +108,17 @@ def _rows_at_zero(plan: Plan) -> _Rows:
     if len(plan.moving):
         motions = [plan.crossing.structure.system.motions[j] for j in plan.moving]
         u, v, a = (
-            np.array([getattr(m, name)(zero)[0] for m in motions])
+            np.array([getattr(m, name)(now)[0] for m in motions])
             for name in ("value", "velocity", "acceleration")
         )
         p0, p1, p2 = (_prescribed_rows(block, len(motions)) for block in blocks)
         height += p0 @ u
         rate += speed * (p1 @ u) + p0 @ v
         second += speed**2 * (p2 @ u) + acceleration * (p1 @ u) + 2.0 * speed * (p1 @ v) + p0 @ a
-    return _Rows(E, E1, E2, height, rate, second)
+    return ContactRows(E, E1, E2, height, rate, second)
 
 
-def _carried(E: sp.csr_array) -> npt.NDArray[np.bool_]:
+def carried_by(E: sp.csr_array) -> npt.NDArray[np.bool_]:
     """Which wheels (n_contact,) the structure carries."""
     return np.asarray(abs(E).sum(axis=1) > 0.0)
 
@@ -132,12 +132,12 @@ def _prescribed_rows(block: RowBlock, n: int) -> FloatArray:
 
 
 def _static(
-    plan: Plan, external: FloatArray, rows: _Rows, factors: StartFactors
+    plan: Plan, external: FloatArray, rows: ContactRows, factors: StartFactors
 ) -> tuple[FloatArray, FloatArray]:
     """Deflection of the structure and contact forces with the train at rest on it."""
     fleet, n = plan.fleet, plan.structure.size
     forces = fleet.weight.copy()
-    carried = np.flatnonzero(_carried(rows.E))
+    carried = np.flatnonzero(carried_by(rows.E))
     if not len(carried) and not np.any(external):
         return np.zeros(n), forces + _elastic_share(fleet, rows.height)
     factor = factors.stiffness
@@ -148,13 +148,13 @@ def _static(
     compliance = np.zeros((len(forces), len(forces)))
     compliance[:, carried] = rows.E @ columns
     # X = X_st + k (E u + r) with E u = E u_0 - (E K⁻¹ Eᵀ) X
-    k = _condensed(fleet)
+    k = condensed_stiffness(fleet)
     right = forces + k @ (rows.E @ u_0 + rows.height)
     forces = np.asarray(np.linalg.solve(np.eye(len(forces)) + k @ compliance, right), dtype=np.float64)
     return u_0 - columns @ forces[carried], forces
 
 
-def _condensed(fleet: Fleet) -> FloatArray:
+def condensed_stiffness(fleet: Fleet) -> FloatArray:
     """Static stiffness (n_contact, n_contact) of the vehicles seen from their contact points."""
     n_contact = len(fleet.weight)
     result = np.zeros((n_contact, n_contact))
@@ -177,11 +177,11 @@ def _condensed(fleet: Fleet) -> FloatArray:
 
 def _elastic_share(fleet: Fleet, heights: FloatArray) -> FloatArray:
     """Change of the contact forces (n_contact,) from an uneven level under vehicles on many wheels."""
-    return np.asarray(_condensed(fleet) @ heights) if np.any(heights) else np.zeros(len(fleet.weight))
+    return np.asarray(condensed_stiffness(fleet) @ heights) if np.any(heights) else np.zeros(len(fleet.weight))
 
 
-def _vehicles_at(
-    fleet: Fleet, forces: FloatArray, rows: _Rows, u_s: FloatArray
+def vehicles_at(
+    fleet: Fleet, forces: FloatArray, rows: ContactRows, u_s: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Displacements of the vehicles at rest on the deflected, uneven line."""
     u = np.zeros(fleet.matrices.size)
@@ -200,24 +200,24 @@ def _accelerate(
     structure: State,
     vehicles: State,
     external: FloatArray,
-    rows: _Rows,
+    rows: ContactRows,
     static: FloatArray,
-    speed: float,
+    speed: FloatArray,
     factors: StartFactors,
 ) -> FloatArray:
     """Fill in the accelerations of both bodies; return the contact forces (n_contact,)."""
     fleet, x = plan.fleet, plan.fleet.coupled
-    acceleration = float(plan.crossing.motion.acceleration(np.zeros(1))[0])
+    _, acceleration = plan.rows.motion(0.0)
     out_of_balance = external - plan.structure.K @ structure.u - plan.structure.damping_force(structure.v)
     out_of_balance -= rows.E.T @ static
-    carried = _carried(rows.E)[x]
+    carried = carried_by(rows.E)[x]
     still = not np.any(carried) and np.abs(out_of_balance).max(initial=0.0) <= 1e-9 * max(
         np.abs(external).max(initial=0.0), 1e-30
     )
     structure_mass = None if still else factors.mass
     columns = np.zeros((plan.structure.size, len(x)))
     if structure_mass is not None:
-        structure.a[:] = structure_mass.solve(_where_mass(plan.structure, out_of_balance))
+        structure.a[:] = structure_mass.solve(where_mass(plan.structure, out_of_balance))
         if np.any(carried):
             columns = structure_mass.solve(np.ascontiguousarray(rows.E[x].T.toarray()))
     if not len(x):
@@ -225,17 +225,17 @@ def _accelerate(
     m = fleet.matrices
     net = -(m.K @ vehicles.u) - m.damping_force(vehicles.v)
     net[fleet.dofs] += static[x] - fleet.weight[x]
-    vehicle_mass = _mass_factor(m, plan)
+    vehicle_mass = mass_factor(m, plan)
     # The wheels' d.o.f. take the contact force; other massless d.o.f. are in balance already.
-    free = vehicle_mass.solve(_where_mass(m, net, fleet.dofs))
+    free = vehicle_mass.solve(where_mass(m, net, fleet.dofs))
     unit = np.zeros((m.size, len(x)))
     unit[fleet.dofs, np.arange(len(x))] = 1.0
     responses = vehicle_mass.solve(unit)
     wanted = rows.second_rate[x] + (
         rows.E[x] @ structure.a
-        + speed**2 * (rows.E2[x] @ structure.u)
-        + acceleration * (rows.E1[x] @ structure.u)
-        + 2.0 * speed * (rows.E1[x] @ structure.v)
+        + speed[x] ** 2 * (rows.E2[x] @ structure.u)
+        + acceleration[x] * (rows.E1[x] @ structure.u)
+        + 2.0 * speed[x] * (rows.E1[x] @ structure.v)
     )
     system = responses[fleet.dofs] + rows.E[x] @ columns
     change = np.linalg.solve(system, wanted - free[fleet.dofs])  # of the contact forces, from the static ones
@@ -246,7 +246,7 @@ def _accelerate(
     return forces
 
 
-def _mass_factor(matrices: Matrices, plan: Plan) -> Factor:
+def mass_factor(matrices: Matrices, plan: Plan) -> Factor:
     """Factor of M, with a trace of stiffness where a d.o.f. has no mass."""
     diagonal = matrices.M.diagonal()
     mass = matrices.M
@@ -258,7 +258,7 @@ def _mass_factor(matrices: Matrices, plan: Plan) -> Factor:
     return factorize(sp.csr_array(mass), kind=plan.settings.solver)
 
 
-def _where_mass(matrices: Matrices, force: FloatArray, also: IntArray | None = None) -> FloatArray:
+def where_mass(matrices: Matrices, force: FloatArray, also: IntArray | None = None) -> FloatArray:
     """The force, without the rounding that stands on massless d.o.f. in balance."""
     mask = matrices.M.diagonal() > 0.0
     if also is not None:

@@ -7,6 +7,7 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from axlespan.interaction.plan import Plan
+from axlespan.interaction.sensors import by_line
 from axlespan.running.stress_points import StressPoints
 
 FloatArray = npt.NDArray[np.float64]
@@ -19,10 +20,12 @@ class StressHistories:
     def __init__(self, plan: Plan) -> None:
         self._plan, wanted = plan, plan.settings.stresses
         system = plan.crossing.structure.system
-        places = np.array([plan.settings.sensors[name] for name in wanted], float)
+        structure, settings = plan.crossing.structure, plan.settings
+        groups = by_line(structure, wanted, settings.sensors, settings.sensor_lines)
         found = StressPoints((), sp.csr_array((0, system.size)))
-        if wanted:
-            found = StressPoints.at(plan.crossing.structure, wanted, places)
+        for line, (numbers, places) in groups.items():
+            more = StressPoints.at(structure, [wanted[i] for i in numbers], places, line)
+            found = StressPoints((*found.names, *more.names), sp.csr_array(sp.vstack([found.rows, more.rows])))
         self.names = found.names
         free = sp.csc_array(found.rows[:, system.free])
         self.free_dofs = np.unique(free.nonzero()[1]).astype(np.int64)

@@ -76,14 +76,20 @@ class Tape:
             self._sums[k, i] = vector @ values[which]
         self.filled = k + 1
 
+    def last_forces(self, contacts: slice) -> FloatArray:
+        """Forces (n_contact,) of the last step."""
+        return self._forces[self.filled - 1, contacts].copy()
+
     def of(self, lane: int, dofs: IntArray, vehicle_dofs: slice, contacts: slice) -> LaneTape:
         """The tape of one crossing: some watched d.o.f. (n_selected,), its vehicles' d.o.f. and contacts."""
         n = self.filled
         at, reading = np.searchsorted(self.watched.dofs, dofs), self.watched.reading
-        if reading is None:
-            near = self._near[:n, :, at * self._lanes + lane]
-        else:
+        if reading is not None:
             near = self._near[:n, :, lane :: self._lanes] @ reading[at].T
+        elif len(at) == len(self.watched.dofs):
+            near = self._near[:n, :, lane :: self._lanes]
+        else:
+            near = self._near[:n, :, at * self._lanes + lane]
         return LaneTape(
             near.transpose(1, 0, 2),
             self._vehicles[:n, :, vehicle_dofs].transpose(1, 0, 2),

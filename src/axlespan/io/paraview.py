@@ -175,15 +175,14 @@ class _Wheels:
     """Points of the wheels on their lines."""
 
     def __init__(self, crossing: Crossing) -> None:
-        contacts = crossing.train.contacts
-        self._lines: Sequence[str] = [point.line for _, _, point, _ in contacts]
+        self._lines: Sequence[str] = crossing.contact_lines
         self._geometries = {
             line: LineGeometry.of(crossing.structure, line) for line in dict.fromkeys(self._lines)
         }
-        numbers = [name.split(".") for name in crossing.train.contact_names]
+        numbers = [name.split(".") for name in crossing.contact_names]
         self._data = {
             "vehicle": np.array([int(vehicle) for vehicle, *_ in numbers], dtype=np.int32),
-            "contact": np.arange(1, len(contacts) + 1, dtype=np.int32),
+            "contact": np.arange(1, len(numbers) + 1, dtype=np.int32),
         }
 
     def write(self, path: Path, fields: Fields, i: int) -> None:

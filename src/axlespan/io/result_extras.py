@@ -18,7 +18,7 @@ _TEXTS, _NUMBERS = ("section", "stress", "dof"), ("station", "field_time", "stre
 def write_extras(file: h5netcdf.File, result: Result) -> None:
     """Add what a result has beside its histories to an open file that holds these already."""
     for name, coordinate in extra_coordinates(result).items():
-        file.dimensions[name] = len(coordinate.values)
+        file.dimensions[coordinate.dimensions[0]] = len(coordinate.values)
         text = coordinate.values.dtype == object
         dtype = h5py.string_dtype() if text else np.float64
         values = np.array(coordinate.values.tolist(), dtype=dtype)  # keeps the dtype's mark of a text
@@ -43,6 +43,6 @@ def read_extras(file: h5py.File) -> dict[str, Any]:
     for name, data in file.items():
         if name in _TEXTS:
             arrays[name] = np.array(data.asstr()[...], dtype=object)
-        elif name in _NUMBERS or name.startswith(("section_", "envelope_", "field_")):
+        elif name in _NUMBERS or name.startswith(("section_", "envelope_", "field_", "line_")):
             arrays[name] = np.asarray(data[...], dtype=np.float64)
     return extras_from(arrays)

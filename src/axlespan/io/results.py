@@ -21,6 +21,7 @@ import numpy.typing as npt
 import axlespan
 from axlespan.errors import InputError, Outcome
 from axlespan.interaction.result import VARIABLES, Result
+from axlespan.io.drawing import Drawing, write_drawing
 from axlespan.io.result_extras import read_extras, write_extras
 from axlespan.io.strict_json import to_json
 
@@ -62,7 +63,12 @@ class Header:
 
 
 def write_result(
-    result: Result, path: str | PathLike[str], *, case_text: str | None = None, version: str | None = None
+    result: Result,
+    path: str | PathLike[str],
+    *,
+    case_text: str | None = None,
+    version: str | None = None,
+    drawing: Drawing | None = None,
 ) -> Path:
     """Write a result as netCDF-4.
 
@@ -78,6 +84,8 @@ def write_result(
         Text of the case file, kept as the attribute ``case``.
     version : str, optional
         Of axlespan; this one when left out.
+    drawing : Drawing, optional
+        Geometry, so that the result can be drawn (:func:`axlespan.io.drawing.drawing_of`).
 
     Returns
     -------
@@ -97,6 +105,8 @@ def write_result(
         _write_coordinates(file, result)
         _write_histories(file, result)
         write_extras(file, result)
+        if drawing is not None:
+            write_drawing(file, drawing)
     try:
         part.write_bytes(content.getbuffer())
         os.replace(part, place)

@@ -14,14 +14,15 @@ from typing import Any
 import numpy as np
 
 import axlespan
-from axlespan.interaction.crossing import Crossing
+from axlespan.interaction.crossing import Crossing, Run
 from axlespan.interaction.result import Result
 from axlespan.io.dof_units import is_rotation, unit_of
 from axlespan.io.force_extremes import force_extremes
 from axlespan.io.peaks import clean, highest, lowest, time_of
 from axlespan.io.strict_json import json_ready, to_json
 from axlespan.io.summary_text import print_summary, summary_lines
-from axlespan.io.verdicts import verdicts
+from axlespan.io.summary_verdicts import assessed
+from axlespan.io.verdicts import verdicts as self_checks
 
 __all__ = ["FORMAT_VERSION", "print_summary", "summary", "summary_lines", "write_summary"]
 
@@ -51,6 +52,7 @@ def summary(
     title: str = "",
     version: str | None = None,
     files: Sequence[str | PathLike[str]] = (),
+    verdicts: Sequence[Mapping[str, Any]] = (),
 ) -> dict[str, Any]:
     """The summary of a result, of a failed run's partial result too.
 
@@ -64,13 +66,15 @@ def summary(
         Of axlespan; this one when left out.
     files : sequence of path, optional
         Files written.
+    verdicts : sequence of mapping, optional
+        Verdicts by the rules of codes, as :mod:`axlespan.standards` gives them.
 
     Returns
     -------
     dict
         Strict JSON: no NaN, no tuples. Names carry their units.
     """
-    checks = verdicts(result.checks)
+    checks = self_checks(result.checks)
     good = result.outcome.code == "completed" and all(check["verdict"] == "pass" for check in checks)
     content = {
         "format": "axlespan summary",
@@ -78,7 +82,7 @@ def summary(
         "version": version or axlespan.__version__,
         "outcome": asdict(result.outcome),
         "verdict": "pass" if good else "attention",
-        "run": {"title": title, **_what(crossing), **_run(result)},
+        "run": {"title": title, **_what(crossing, _last_time(result)), **_run(result)},
         "computation": _computation(result),
         "sensors": _sensors(result),
         "contact_forces": force_extremes(result, _ends(crossing)),
@@ -86,6 +90,8 @@ def summary(
         "vehicle_accelerations": _vehicle_accelerations(result),
         "support_reactions": _reactions(result),
         "checks": checks,
+        "assessment": assessed(verdicts),
+        "verdicts": [dict(verdict) for verdict in verdicts],
         "notes": list(result.facts.get("notes") or ()),
         "files": [str(file) for file in files],
     }
@@ -111,7 +117,11 @@ def write_summary(content: Mapping[str, Any], path: str | PathLike[str]) -> Path
     return place
 
 
-def _what(crossing: Crossing | None) -> dict[str, Any]:
+def _last_time(result: Result) -> float:
+    return float(result.time[-1]) if len(result.time) else 0.0
+
+
+def _what(crossing: Crossing | None, end: float) -> dict[str, Any]:
     names = (
         "structure",
         "structure_from_m",
@@ -120,21 +130,24 @@ def _what(crossing: Crossing | None) -> dict[str, Any]:
         "vehicles",
         "speed_start_m_per_s",
         "speed_end_m_per_s",
+        "other_trains",
     )
     if crossing is None:
         return dict.fromkeys(names)
-    begin, end = _ends(crossing) or (None, None)
-    speeds = crossing.motion.speeds
-    values = (
-        crossing.structure.name,
-        begin,
-        end,
-        crossing.train.name,
-        len(crossing.train.placements),
-        speeds[0],
-        speeds[-1],
-    )
+    first, *others = [_moving(run, end) for run in crossing.runs]
+    values = (crossing.structure.name, *(_ends(crossing) or (None, None)), *first.values(), others)
     return dict(zip(names, values, strict=True))
+
+
+def _moving(run: Run, end: float) -> dict[str, Any]:
+    """A train and its speeds at the beginning and the end."""
+    speeds = np.abs(run.course.velocity(np.array([0.0, end]))).tolist()
+    return {
+        "train": run.train.name,
+        "vehicles": len(run.train.placements),
+        "speed_start_m_per_s": speeds[0],
+        "speed_end_m_per_s": speeds[1],
+    }
 
 
 def _ends(crossing: Crossing | None) -> tuple[float, float] | None:

@@ -8,6 +8,8 @@ from typing import Any
 from rich.console import Console
 from rich.text import Text
 
+from axlespan.io.summary_verdicts import verdict_lines
+
 Summary = Mapping[str, Any]
 
 # Rows shown of each table; summary.json has them all.
@@ -16,7 +18,14 @@ _ROWS = 8
 # Width of the first column of the tables, so that they stand below each other.
 _FIRST = 24
 
-_STYLES = {"pass": "green", "attention": "bold yellow", "not checked": "dim", "failed": "bold red"}
+_STYLES = {
+    "pass": "green",
+    "attention": "bold yellow",
+    "not checked": "dim",
+    "not assessed": "dim",
+    "failed": "bold red",
+    "FAIL": "bold red",
+}
 
 
 def print_summary(summary: Summary, console: Console | None = None) -> None:
@@ -34,7 +43,18 @@ def print_summary(summary: Summary, console: Console | None = None) -> None:
 
 def summary_lines(summary: Summary) -> list[str]:
     """A summary, as :func:`axlespan.io.summary.summary` makes it, in lines of plain text."""
-    parts = (_head, _sensors, _forces, _tension, _vehicles, _reactions, _checks, _notes, _files)
+    parts = (
+        _head,
+        _sensors,
+        _forces,
+        _tension,
+        _vehicles,
+        _reactions,
+        verdict_lines,
+        _checks,
+        _notes,
+        _files,
+    )
     lines: list[str] = []
     for part in parts:
         block = part(summary)
@@ -59,6 +79,7 @@ def _head(summary: Summary) -> list[str]:
         ("structure", _joined(run["structure"], _with(length, "{:.6g} m"), _dofs(summary))),
         ("train", _joined(run["train"], _wheels(run))),
         ("speed", _speed(run)),
+        *(("and", _joined(other["train"], _speed(other))) for other in run.get("other_trains") or ()),
         ("time", _time(run)),
         ("computed", _computed(summary["computation"])),
     ]

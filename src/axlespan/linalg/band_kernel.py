@@ -1,32 +1,90 @@
-"""Forward and back substitution in a band, compiled by numba, many right-hand sides at once."""
+"""Forward and back substitution in a band, compiled by numba: one right-hand side, or many side by side."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import cache
 from typing import Any
 
-from axlespan.linalg.arrays import FloatArray, IntArray
+import numpy as np
 
-Solver = Callable[[FloatArray, IntArray, FloatArray], None]
+from axlespan.linalg.arrays import FloatArray
+from axlespan.linalg.compiled import Loop, compiled
+
+# The widest half-bandwidth for which the loop over one right-hand side beats LAPACK (n = 5436; at 32, 108
+# against 180 µs; at 8, 30 against 120), and the step between the widths that are compiled.
+WIDEST, _WIDTHS = 32, 2
 
 
 @cache
-def compiled_solver() -> Solver | None:
-    """Return :func:`substitute` as machine code, or None without numba.
+def compiled_solver() -> Loop | None:
+    """Return :func:`substitute` as machine code, or None without numba."""
+    return compiled(substitute)
 
-    No fast-math: the order of the operations is the one written, so the numbers are the same at every run.
+
+@cache
+def compiled_single(width: int) -> Loop | None:
+    """Return :func:`single` for a width as machine code, or None without numba."""
+    return compiled(single(width))
+
+
+def padded_width(half_bandwidth: int) -> int:
+    """The width that is compiled for a half-bandwidth."""
+    return max(-(-half_bandwidth // _WIDTHS) * _WIDTHS, 4)
+
+
+def scaled_rows(lower: FloatArray, width: int) -> tuple[FloatArray, FloatArray]:
+    """Rows of L and of Lᵀ (n, width + 1), divided by their diagonals, whose inverses stand first.
+
+    Parameters
+    ----------
+    lower : ndarray, shape (n, w + 1)
+        ``lower[j, d]`` is entry (j + d, j) of L, w <= width.
     """
-    try:
-        import numba
-    except ImportError:
-        return None
-    options: dict[str, Any] = {"nogil": True, "fastmath": False}
-    try:
-        compiled: Solver = numba.njit(cache=True, **options)(substitute)
-    except RuntimeError:  # no folder to keep the machine code in
-        compiled = numba.njit(**options)(substitute)
-    return compiled
+    n, w = lower.shape
+    inverse = 1.0 / lower[:, 0]
+    forward, backward = np.zeros((n, width + 1)), np.zeros((n, width + 1))
+    forward[:, 0] = backward[:, 0] = inverse
+    for d in range(1, min(w, n)):
+        forward[d:, d] = lower[: n - d, d] * inverse[d:]
+        backward[: n - d, d] = lower[: n - d, d] * inverse[: n - d]
+    return forward, backward
+
+
+def single(width: int) -> Loop:
+    """The loop that solves L Lᵀ x = b for one right-hand side and a width that the compiler knows.
+
+    Every row waits for the one before it. So the newest entry comes last, and divisions are made beforehand: what is
+    left of the wait is one multiplication and one addition.
+    """
+    pairs = width // 2 - 1
+
+    def substitute_one(forward: Any, backward: Any, rows: Any, b: Any, x: Any, work: Any) -> None:
+        """Solve; rows as in :func:`substitute`, and zeros (n + 2 width,) to work in."""
+        # Unsigned: a signed index would be asked at each access whether it counts from the end.
+        one, two, w = np.uint64(1), np.uint64(2), np.uint64(width)
+        n = np.uint64(forward.shape[0])
+        for i in range(n):
+            k = i + w
+            first, second = forward[i, 0] * b[rows[i]], 0.0
+            for e in range(np.uint64(pairs)):
+                d = w - two * e
+                first -= forward[i, d] * work[k - d]
+                second -= forward[i, d - one] * work[k - d + one]
+            first -= forward[i, two] * work[k - two]
+            work[k] = (first + second) - forward[i, one] * work[k - one]
+        for j in range(n):
+            i = n - one - j
+            k = i + w
+            first, second = backward[i, 0] * work[k], 0.0
+            for e in range(np.uint64(pairs)):
+                d = w - two * e
+                first -= backward[i, d] * work[k + d]
+                second -= backward[i, d - one] * work[k + d - one]
+            first -= backward[i, two] * work[k + two]
+            work[k] = (first + second) - backward[i, one] * work[k + one]
+            x[rows[i]] = work[k]
+
+    return substitute_one
 
 
 def substitute(lower: Any, rows: Any, x: Any) -> None:

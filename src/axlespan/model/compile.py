@@ -11,11 +11,13 @@ import scipy.sparse as sp
 from axlespan.errors import InputError
 from axlespan.linalg.eigen import lowest_modes
 from axlespan.linalg.low_rank import LowRank
-from axlespan.model.assembly import assemble
+from axlespan.model.assembly import assemble, element_dofs
 from axlespan.model.damping import Damping, Modal, Rayleigh
 from axlespan.model.dofs import COMPONENTS, DofTable, component_indices
 from axlespan.model.model import Model, Tie
-from axlespan.model.system import Load, System
+from axlespan.model.parts import Part
+from axlespan.model.nonlinear import NonlinearPart
+from axlespan.model.system import Load, SpringRows, System
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -48,10 +50,13 @@ def compile_model(model: Model) -> Compiled:
         raise InputError("must have at least one element", field="model")
     names = table.names(model.node_labels())
     stiffness, mass, damping = assemble(model.parts, model.points, table)
+    damping = _with_part_damping(model, table, damping)
     elimination, independent = _elimination(model, table, names)
     stiffness, mass, damping = (_projected(matrix, elimination) for matrix in (stiffness, mass, damping))
-    if isinstance(model.damping, Rayleigh):
-        damping = sp.csr_array(damping + model.damping.alpha * mass + model.damping.beta * stiffness)
+    nonlinear = _nonlinear(model, table, elimination)
+    if isinstance(model.damping, Rayleigh):  # the reference stiffness of a nonlinear spring damps nothing
+        linear = stiffness - sum((s.law.stiffness * (s.rows.T @ s.rows) for s in nonlinear), 0.0 * stiffness)
+        damping = sp.csr_array(damping + model.damping.alpha * mass + model.damping.beta * linear)
     position = np.full(table.size, -1, dtype=np.int64)
     position[independent] = np.arange(len(independent))
     system = System(
@@ -65,8 +70,35 @@ def compile_model(model: Model) -> Compiled:
         motions=tuple(support.motion for support in model.supports),
         loads=_loads(model, table, elimination),
         independent=independent,
+        nonlinear=nonlinear,
     )
     return Compiled(with_modal_damping(system, model.damping), table)
+
+
+def _with_part_damping(model: Model, table: DofTable, damping: sp.csr_array) -> sp.csr_array:
+    """C with α M + β K of the parts that have damping of their own."""
+    kinds: dict[Rayleigh, list[Part]] = {}
+    for part in model.parts:
+        if part.name in model.part_damping:
+            kinds.setdefault(model.part_damping[part.name], []).append(part)
+    for own, parts in kinds.items():
+        stiffness, mass, _ = assemble(tuple(parts), model.points, table)
+        damping = sp.csr_array(damping + own.alpha * mass + own.beta * stiffness)
+    return damping
+
+
+def _nonlinear(model: Model, table: DofTable, elimination: sp.csr_array) -> tuple[SpringRows, ...]:
+    """Elongations of the nonlinear springs over the independent d.o.f."""
+    found = []
+    for part in model.parts:
+        if not isinstance(part, NonlinearPart):
+            continue
+        dofs = element_dofs(part, table)  # (n_spring, 2)
+        n_spring = len(dofs)
+        row = np.repeat(np.arange(n_spring), 2)
+        unit = sp.coo_array((np.tile([-1.0, 1.0], n_spring), (row, dofs.ravel())), (n_spring, table.size))
+        found.append(SpringRows(part.name, part.law, sp.csr_array(sp.csr_array(unit) @ elimination), part.gap))
+    return tuple(found)
 
 
 def dof_table(model: Model) -> DofTable:

@@ -11,12 +11,13 @@ import numpy.typing as npt
 
 from axlespan.elements.beam import BeamProperties
 from axlespan.errors import InputError
-from axlespan.model.damping import Damping
+from axlespan.model.damping import Damping, Rayleigh
 from axlespan.model.dofs import COMPONENTS, component_indices, nearest
 from axlespan.model.from_mesh import Section, parts_from_mesh
 from axlespan.model.materials import require_positive
 from axlespan.model.mesh import Mesh
 from axlespan.model.motions import Constant, Motion
+from axlespan.model.nonlinear import NonlinearPart, SpringLaw
 from axlespan.model.parts import BarPart, BeamPart, MassPart, Part, SpringPart, checked_offset
 
 FloatArray = npt.NDArray[np.float64]
@@ -69,6 +70,7 @@ class Model:
     ties: tuple[Tie, ...] = ()
     loads: tuple[NodalLoad, ...] = ()
     damping: Damping | None = None
+    part_damping: Mapping[str, Rayleigh] = field(default_factory=dict)  # of parts by name, beside damping
     node_sets: Mapping[str, IntArray] = field(default_factory=dict)  # from meshes
 
     # --- nodes -------------------------------------------------------------------------------
@@ -249,6 +251,33 @@ class Model:
         dashpots = np.broadcast_to([c.get(component, 0.0) for component in components], shape)
         return self.with_part(SpringPart(name, pairs, springs, dashpots, components))
 
+    def with_nonlinear_springs(
+        self,
+        nodes: npt.ArrayLike,
+        law: SpringLaw,
+        component: str = "z",
+        *,
+        gap: npt.ArrayLike = 0.0,
+        name: str = "nonlinear springs",
+    ) -> Model:
+        """Append springs or dashpots of a law between pairs of nodes, along one component.
+
+        Parameters
+        ----------
+        nodes : array (n_spring, 2)
+            The elongation is the second one's displacement less the first one's.
+        law : SpringLaw
+            See :mod:`axlespan.model.nonlinear`.
+        gap : float or array (n_spring,)
+            Added to the elongation [m]: a spring that only pushes touches when it is shortened by its gap.
+        """
+        component_indices((component,))
+        pairs = _pairs(nodes)
+        gaps = np.broadcast_to(np.asarray(gap, float), (len(pairs),)).copy()
+        if not np.all(np.isfinite(gaps)):
+            raise InputError("must be finite", field="gap")
+        return self.with_part(NonlinearPart(name, pairs, law, gaps, (component,)))
+
     def with_mass(
         self,
         node: int | str,
@@ -405,6 +434,17 @@ class Model:
     def with_damping(self, damping: Damping | None) -> Model:
         """Return the same model with another damping."""
         return replace(self, damping=damping)
+
+    def with_part_damping(self, damping: Mapping[str, Rayleigh]) -> Model:
+        """Return the same model with C = α M + β K of some parts, by their names, beside its damping."""
+        return replace(self, part_damping={**self.part_damping, **damping})
+
+    def damping_of(self, part: Part) -> Rayleigh:
+        """Rayleigh damping of a part: of the model and its own."""
+        own = self.part_damping.get(part.name, Rayleigh())
+        if not isinstance(self.damping, Rayleigh):
+            return own
+        return Rayleigh(self.damping.alpha + own.alpha, self.damping.beta + own.beta)
 
 
 def _pairs(nodes: npt.ArrayLike) -> IntArray:

@@ -1,4 +1,4 @@
-"""The outline of a model: edges to draw, those inside solids left out."""
+"""What to draw of a model: its edges and its surface, those inside solids left out."""
 
 from __future__ import annotations
 
@@ -6,8 +6,9 @@ import numpy as np
 import numpy.typing as npt
 
 from axlespan.elements.shape_functions import EDGES
-from axlespan.model.continuum_parts import SolidPart
+from axlespan.model.continuum_parts import PlanePart, SolidPart
 from axlespan.model.model import Model
+from axlespan.model.shell_parts import ShellPart
 
 IntArray = npt.NDArray[np.int64]
 
@@ -27,6 +28,42 @@ def outline(model: Model) -> IntArray:
             pairs.append(nodes[:, np.array(EDGES[shape])].reshape(-1, 2))
     pairs += _edges_of_outer(corners)
     return np.unique(np.sort(np.concatenate(pairs), axis=1), axis=0)
+
+
+def surface(model: Model) -> tuple[IntArray, IntArray]:
+    """Triangles that cover outer faces of solids, shells and plane elements.
+
+    Returns
+    -------
+    triangles : array (n, 3)
+        Nodes; corners only, where elements have nodes at the middles of their edges too.
+    elements : array (n,)
+        Their elements, counted over all parts of the model.
+    """
+    faces, owners, begin = [np.empty((0, 4), dtype=np.int64)], [np.empty(0, dtype=np.int64)], 0
+    inside = [np.empty(0, dtype=bool)]  # whether a face may lie between two solids
+    for part in model.parts:
+        nodes = np.asarray(part.nodes)
+        elements = begin + np.arange(len(nodes))
+        begin += len(nodes)
+        found: list[IntArray] = []
+        if isinstance(part, SolidPart):
+            found = _faces(part)
+        elif isinstance(part, (PlanePart, ShellPart)):
+            found = [nodes[:, [0, 1, 2, 2] if part.kind.startswith("tri") else [0, 1, 2, 3]]]
+        for corners in found:
+            faces.append(corners)
+            owners.append(elements)
+            inside.append(np.full(len(corners), isinstance(part, SolidPart)))
+    quads, owner, solid = (np.concatenate(found) for found in (faces, owners, inside))
+    if not len(quads):
+        return np.empty((0, 3), dtype=np.int64), owner
+    _, which, count = np.unique(np.sort(quads, axis=1), axis=0, return_inverse=True, return_counts=True)
+    outer = ~solid | (count[which.ravel()] == 1)
+    quads, owner = quads[outer], owner[outer]
+    triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+    real = triangles[:, 1] != triangles[:, 2]
+    return triangles[real], np.concatenate([owner, owner])[real]
 
 
 def _faces(part: SolidPart) -> list[IntArray]:

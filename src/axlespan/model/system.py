@@ -13,6 +13,7 @@ import scipy.sparse as sp
 from axlespan.linalg.low_rank import LowRank
 from axlespan.model.dofs import nearest
 from axlespan.model.motions import Motion
+from axlespan.model.nonlinear import SpringLaw
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -30,6 +31,16 @@ class Load:
         if self.history is None:
             return np.ones(np.shape(time))
         return np.asarray(self.history(time), float)
+
+
+@dataclass(frozen=True, eq=False)
+class SpringRows:
+    """Nonlinear springs of one law; their reference stiffness is in the stiffness matrix of the system."""
+
+    name: str
+    law: SpringLaw
+    rows: sp.csr_array  # (n_spring, n): elongations e = rows @ u [m]
+    gap: FloatArray  # (n_spring,) added to the elongations [m]
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +77,7 @@ class System:
     modal_damping: LowRank | None = None  # over the free d.o.f.
     independent: IntArray = field(default_factory=lambda: np.empty(0, dtype=np.int64))  # (n,) in dof_names
     components: tuple[str, ...] = ()  # (n_full,) x, y, …, rz; from the names when left out
+    nonlinear: tuple[SpringRows, ...] = ()
 
     def __post_init__(self) -> None:
         if not self.components:

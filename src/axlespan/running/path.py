@@ -23,6 +23,9 @@ from axlespan.errors import InputError
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
+#: Shares of three sleepers in an axle load (EN 1991-2 6.3.6.1; from memory).
+SLEEPER_SHARES = (0.25, 0.5, 0.25)
+
 
 @dataclass(frozen=True, eq=False)
 class PolynomialPath:
@@ -52,6 +55,11 @@ class PolynomialPath:
         used = np.any(self.coefficients != 0.0, axis=2)
         return np.unique(self.dofs[used])
 
+    @cached_property
+    def _by_power(self) -> FloatArray:
+        """Coefficients (n_power, n_segment, n_local), each power in one piece."""
+        return np.ascontiguousarray(np.moveaxis(self.coefficients, 2, 0))
+
     def carries(self, position: FloatArray) -> npt.NDArray[np.bool_]:
         """Whether positions [m] are on the path, ends included."""
         return np.asarray((position >= self.start) & (position <= self.stop))
@@ -69,12 +77,13 @@ class PolynomialPath:
         """
         position = np.asarray(position, float)
         segment, xi = self.locate(position)
-        coefficients = self.coefficients[segment]
-        n_power = coefficients.shape[-1]
-        result = np.zeros(coefficients.shape[:-1])
+        n_power = self.coefficients.shape[-1]
+        result = np.zeros((*segment.shape, self.coefficients.shape[1]))
+        xi = xi[..., None]
         for power in range(n_power - 1, derivative - 1, -1):
             falling = float(np.prod(np.arange(power, power - derivative, -1))) if derivative else 1.0
-            result = result * xi[..., None] + falling * coefficients[..., power]
+            result *= xi
+            result += falling * self._by_power[power].take(segment, axis=0)
         if derivative:
             result /= (np.diff(self.breaks)[segment] ** derivative)[..., None]
         result[~self.carries(position)] = 0.0
@@ -98,6 +107,11 @@ class PolynomialPath:
         coefficients = np.where((new >= 0)[..., None], self.coefficients, 0.0)
         return PolynomialPath(self.breaks, np.maximum(new, 0), coefficients)
 
+    def moved_by(self, displacement: FloatArray) -> PolynomialPath:
+        """The line that given displacements (n,) of the d.o.f. make, as the weights of a single d.o.f. 0."""
+        line = np.einsum("ej,ejp->ep", displacement[self.dofs], self.coefficients)
+        return PolynomialPath(self.breaks, np.zeros((len(line), 1), dtype=np.int64), line[:, None])
+
     def averaged(self, length: float) -> PolynomialPath:
         """The moving average over a length [m]: the weights of a footprint of uniform pressure.
 
@@ -111,10 +125,52 @@ class PolynomialPath:
         """The path under a footprint: a triangular pressure over a length [m], most in the middle.
 
         Two moving averages over half the length each; a path with kinks in slope becomes one with a
-        continuous curvature. A sleeper spacing to either side is how a rail spreads an axle load
-        (EN 1991-2 6.3.6.1: 25/50/25 % over three sleepers).
+        continuous curvature.
         """
-        return self.averaged(0.5 * length).averaged(0.5 * length)
+        if length not in self._spread:
+            self._spread[length] = self.averaged(0.5 * length).averaged(0.5 * length)
+        return self._spread[length]
+
+    @cached_property
+    def _spread(self) -> dict[float, PolynomialPath]:
+        """Footprints that were asked for: crossings of one structure share them."""
+        return {}
+
+    def shared(self, spacing: float, shares: tuple[float, ...] = SLEEPER_SHARES) -> PolynomialPath:
+        """The path under loads that are shared among points in a row, in the middle of which the wheel stands.
+
+        With three shares of 25, 50 and 25 % this is an axle on three sleepers (EN 1991-2 6.3.6.1). The points move
+        with the wheel: it always stands over one of them. Points before and after the path count as on the ground.
+
+        Parameters
+        ----------
+        spacing : float
+            Between the points [m].
+        shares : tuple of float
+            Of each point, an odd number of them that sum up to one.
+        """
+        half = len(shares) // 2
+        offsets = spacing * (np.arange(len(shares)) - half)
+        edges = np.unique(np.concatenate([self.breaks + offset for offset in offsets]))
+        edges = edges[np.concatenate([[True], np.diff(edges) > 1e-9 * spacing])]
+        middles, n_power = 0.5 * (edges[1:] + edges[:-1]), self.coefficients.shape[2]
+        blocks, dofs = [], []
+        for offset, share in zip(offsets, shares, strict=True):
+            on = self.carries(middles + offset)
+            segment, _ = self.locate(middles + offset)
+            begin = self.breaks[segment]
+            size = self.breaks[segment + 1] - begin
+            a, b = (edges[:-1] + offset - begin) / size, np.diff(edges) / size
+            turn = np.zeros((len(middles), n_power, n_power))
+            for p in range(n_power):
+                for q in range(p + 1):
+                    turn[:, p, q] = comb(p, q) * a ** (p - q) * b**q
+            turn[~on] = 0.0
+            blocks.append(share * self.coefficients[segment] @ turn)
+            dofs.append(self.dofs[segment])
+        n = int(self.dofs.max()) + 1
+        stacked = _stack(np.concatenate(dofs, axis=1), np.concatenate(blocks, axis=1), n)
+        return _unstack(edges, stacked, len(middles), n_power)
 
 
 def _stack(dofs: IntArray, coefficients: FloatArray, n: int) -> sp.csr_array:
@@ -134,8 +190,10 @@ def _unstack(breaks: FloatArray, stacked: sp.csr_array, n_segment: int, n_power:
     keep = entries.data != 0.0
     segment, power = np.divmod(entries.row[keep].astype(np.int64), n_power)
     column, value = entries.col[keep].astype(np.int64), entries.data[keep]
-    pairs, inverse = np.unique(np.column_stack([segment, column]), axis=0, return_inverse=True)
+    n = stacked.shape[1]
+    keys, inverse = np.unique(segment * n + column, return_inverse=True)
     inverse = inverse.reshape(-1)
+    pairs = np.column_stack(np.divmod(keys, n))
     begin = np.searchsorted(pairs[:, 0], np.arange(n_segment))
     local = np.arange(len(pairs)) - begin[pairs[:, 0]] if len(pairs) else np.empty(0, dtype=np.int64)
     n_local = int(local.max(initial=0)) + 1
@@ -159,39 +217,38 @@ def _averaged(path: PolynomialPath, length: float) -> PolynomialPath:
     primitive = np.zeros((*path.coefficients.shape[:2], n_power + 1))
     primitive[:, :, 1:] = path.coefficients / powers * (size / length)[:, None, None]
     whole = primitive.sum(axis=2)
-    middles = 0.5 * (edges[1:] + edges[:-1])
-    rows: list[tuple[IntArray, FloatArray]] = []
-    for begin, end, middle in zip(edges[:-1], edges[1:], middles, strict=True):
-        first = int(np.searchsorted(path.breaks, middle - half, side="right")) - 1
-        last = int(np.searchsorted(path.breaks, middle + half, side="right")) - 1
-        dofs, terms = [], []
-        for e in range(max(first, 0), min(last, len(size) - 1) + 1):
-            term = np.zeros((path.dofs.shape[1], n_power + 1))
-            if e == last:
-                term += _substituted(primitive[e], begin + half - path.breaks[e], end - begin, size[e])
-            else:
-                term[:, 0] += whole[e]
-            if e == first:
-                term -= _substituted(primitive[e], begin - half - path.breaks[e], end - begin, size[e])
-            dofs.append(path.dofs[e])
-            terms.append(term)
-        rows.append((np.concatenate(dofs), np.concatenate(terms)))
-    n_local = max(len(dofs) for dofs, _ in rows)
-    all_dofs = np.full((len(rows), n_local), rows[0][0][0], dtype=np.int64)
-    coefficients = np.zeros((len(rows), n_local, n_power + 1))
-    for i, (own, polynomials) in enumerate(rows):
-        all_dofs[i, : len(own)] = own
-        coefficients[i, : len(own)] = polynomials
+    begins, steps = edges[:-1], np.diff(edges)
+    middles = begins + 0.5 * steps
+    # Segments under the moving window, whose ends lie in segments first and last; n_segment of them at most.
+    first = np.searchsorted(path.breaks, middles - half, side="right") - 1
+    last = np.searchsorted(path.breaks, middles + half, side="right") - 1
+    low, high = np.maximum(first, 0), np.minimum(last, len(size) - 1)
+    n_local, n_edge = path.dofs.shape[1], len(middles)
+    under = low[:, None] + np.arange(int((high - low).max(initial=0)) + 1)
+    there = under <= high[:, None]
+    under = np.minimum(under, len(size) - 1)
+    terms = np.zeros((*under.shape, n_local, n_power + 1))
+    terms[..., 0] = np.where(under == last[:, None], 0.0, 1.0)[..., None] * whole[under]
+    for ends, sign in ((last, 1.0), (first, -1.0)):
+        row, column = np.nonzero((under == ends[:, None]) & there)
+        segment = under[row, column]
+        offset = begins[row] + sign * half - path.breaks[segment]
+        terms[row, column] += sign * _substituted(primitive[segment], offset, steps[row], size[segment])
+    terms[~there] = 0.0
+    all_dofs = np.where(there[..., None], path.dofs[under], path.dofs[low][:, None])
     n = int(path.dofs.max()) + 1
-    return _unstack(edges, _stack(all_dofs, coefficients, n), len(rows), n_power + 1)
+    stacked = _stack(all_dofs.reshape(n_edge, -1), terms.reshape(n_edge, -1, n_power + 1), n)
+    return _unstack(edges, stacked, n_edge, n_power + 1)
 
 
-def _substituted(coefficients: FloatArray, offset: float, step: float, size: float) -> FloatArray:
-    """Polynomials in ξ = (offset + step · η) / size, rewritten in powers of η."""
+def _substituted(
+    coefficients: FloatArray, offset: FloatArray, step: FloatArray, size: FloatArray
+) -> FloatArray:
+    """Polynomials (m, n_local, n_power) in ξ = (offset + step · η) / size, rewritten in powers of η."""
     a, b = offset / size, step / size
-    n = coefficients.shape[1]
-    turn = np.zeros((n, n))
+    n = coefficients.shape[-1]
+    turn = np.zeros((len(a), n, n))
     for p in range(n):
         for q in range(p + 1):
-            turn[p, q] = comb(p, q) * a ** (p - q) * b**q
+            turn[:, p, q] = comb(p, q) * a ** (p - q) * b**q
     return np.asarray(coefficients @ turn)

@@ -23,7 +23,6 @@ from axlespan.elements import beam_sections
 from axlespan.elements.beam_sections import QUANTITIES
 from axlespan.errors import InputError
 from axlespan.model.assembly import element_dofs
-from axlespan.model.damping import Rayleigh
 from axlespan.running.beams import REVERSED, BeamTable, carriers, taken
 from axlespan.running.line import VERTICAL
 from axlespan.running.path import PolynomialPath
@@ -96,7 +95,7 @@ class BeamSections:
     def rows(self) -> tuple[sp.csr_array, sp.csr_array, sp.csr_array]:
         """Rows (n_row, n) over the independent d.o.f. for displacements, velocities and accelerations."""
         model, table, n_full = self.beams.model, self.beams.table, self.structure.system.elimination.shape[0]
-        static, inertial = (sp.csr_array((self.n_row, n_full)) for _ in range(2))
+        static, damping, inertial = (sp.csr_array((self.n_row, n_full)) for _ in range(3))
         for part, at, elements in self.beams.by_part(self.beam):
             own = taken(part, elements)
             ends = own.coordinates(model.points)
@@ -107,13 +106,14 @@ class BeamSections:
             dofs = element_dofs(own, table)
             signs = self._signs(at)[:, :, None]
             a, b = (self._matrix(signs * rows[:, :, own.kept()], at, dofs, n_full) for rows in pair)
+            rayleigh = model.damping_of(part)
             static, inertial = static + a, inertial + b
+            damping = damping + rayleigh.alpha * b + rayleigh.beta * a
         elimination = self.structure.system.elimination
-        static, inertial = (sp.csr_array(rows @ elimination) for rows in (static, inertial))
-        damping = model.damping
-        if not isinstance(damping, Rayleigh):
-            return static, sp.csr_array(static.shape), inertial
-        return static, sp.csr_array(damping.alpha * inertial + damping.beta * static), inertial
+        static, damping, inertial = (
+            sp.csr_array(rows @ elimination) for rows in (static, damping, inertial)
+        )
+        return static, damping, inertial
 
     def _signs(self, at: IntArray) -> FloatArray:
         """Of the section forces (n, 4) in the sense of the line: along it, V = dM/ds."""

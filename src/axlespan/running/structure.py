@@ -20,6 +20,9 @@ FloatArray = npt.NDArray[np.float64]
 
 #: Name of the line that wheels use unless they name another.
 MAIN_LINE = "main"
+#: Names of the lines over the deck and over the rails of a bridge with track.
+DECK_LINE = "deck"
+RAIL_LINE = "rail"
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +55,11 @@ class Structure:
         if name == MAIN_LINE:
             return next(iter(self.lines.values()))
         raise nearest(name, list(self.lines), "running line")
+
+    @property
+    def sensor_line(self) -> str:
+        """The line on which sensors stand that name none: the deck under a track, else the main line."""
+        return DECK_LINE if DECK_LINE in self.lines else MAIN_LINE
 
     @property
     def length(self) -> float:

@@ -2,29 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from axlespan import irregularity as profiles
 from axlespan.dynamics.alpha import Alpha
 from axlespan.errors import InputError
-from axlespan.interaction.crossing import Crossing
+from axlespan.interaction.crossing import Crossing, OtherTrain
 from axlespan.interaction.plan import Plan, plan_for
 from axlespan.interaction.settings import Iteration, settings_for
-from axlespan.irregularity import Profile
-from axlespan.running.structure import Structure
-from axlespan.study import case_crossing, case_train
+from axlespan.running.structure import MAIN_LINE, Structure
+from axlespan.study import case_crossing
 from axlespan.study.build_checks import overlaps, require_solver, require_stable
 from axlespan.study.build_structures import structure_of
-from axlespan.study.build_vehicles import vehicle_of
+from axlespan.study.build_irregularity import irregularity_of
+from axlespan.study.build_vehicles import train_of
 from axlespan.study.built import BuiltStructure
 from axlespan.study.case_analysis import EveryFew
 from axlespan.study.loader import LoadedCase
 from axlespan.study.pointing import pointing
-from axlespan.vehicles import Placement, Train
+from axlespan.vehicles import Train
 
 #: How notes begin that are warnings.
 WARNING = "warning: "
@@ -52,8 +51,22 @@ class BuiltCase:
         return (*self.warnings, *said)
 
 
-def build(loaded: LoadedCase) -> BuiltCase:
+def build(
+    loaded: LoadedCase,
+    *,
+    made: BuiltStructure | None = None,
+    train: Train | None = None,
+    lasting: Callable[[Crossing], int] | None = None,
+) -> BuiltCase:
     """Build the structure, the train and the plan of a case.
+
+    Parameters
+    ----------
+    loaded : LoadedCase
+    made, train : optional
+        Structure and train of this case where they have been built before, as in a sweep.
+    lasting : callable, optional
+        Number of steps of a crossing, in place of the case's own.
 
     Raises
     ------
@@ -61,43 +74,28 @@ def build(loaded: LoadedCase) -> BuiltCase:
         If something is wrong that only shows now; it points to the place in the file.
     """
     case = loaded.case
-    with pointing(loaded, "structure"):
-        made = structure_of(case.structure)
-        require_stable(made.structure, case.structure)
-    with pointing(loaded, "train"):
-        train = _train(loaded, made.structure)
+    if made is None:
+        with pointing(loaded, "structure"):
+            made = structure_of(case.structure)
+            require_stable(made.structure, case.structure)
+    with pointing(loaded, "crossing"):
+        _require_lines(case.crossing, made.structure)
+    if train is None:
+        with pointing(loaded, "train"):
+            train = train_of(loaded, made.structure, lines=_lines(case.crossing))
     with pointing(loaded, "crossing"):
         crossing = _crossing(loaded, made.structure, train)
     with pointing(loaded, "analysis"):
         require_solver(case.analysis.solver)
         method = _method(loaded)
-        settings = settings_for(crossing, method=method, **_options(case.analysis, case.output, made))
+        options = _options(case.analysis, case.output, made)
+        if lasting is not None:
+            options = {**options, "steps": lasting(crossing)}
+        settings = settings_for(crossing, method=method, **options)
         plan = plan_for(crossing, settings)
     warnings = (*loaded.warnings, *(f"{loaded.source.file}: structure: {word}" for word in made.warnings))
     warnings = (*warnings, *overlaps(train, loaded.source))
     return BuiltCase(loaded, crossing, plan, warnings, made.facts)
-
-
-# --- train -----------------------------------------------------------------------------------------
-
-
-def _train(loaded: LoadedCase, structure: Structure) -> Train:
-    entries = loaded.case.train
-    built = []
-    for number, entry in enumerate(entries):
-        with pointing(loaded, f"train.{number}"):
-            built.append(vehicle_of(entry, loaded.case.analysis.gravity))
-            built[-1].static_forces(loaded.case.analysis.gravity)  # it stands, and no wheel pulls
-            for name in {point.line for point in built[-1].contacts}:
-                structure.line(name)  # it is there
-    wheelbases = [max(point.behind for point in vehicle.contacts) for vehicle in built]
-    heads = case_train.first_wheels(entries, wheelbases, [None] * len(built))
-    placed = [
-        Placement(vehicle, behind) for vehicle, places in zip(built, heads, strict=True) for behind in places
-    ]
-    placed.sort(key=lambda item: item.behind)
-    names = dict.fromkeys(vehicle.name for vehicle in built)
-    return Train(tuple(placed), f"{len(placed)} × {', '.join(names)}" if len(placed) > 1 else built[0].name)
 
 
 # --- crossing and analysis ---------------------------------------------------------------------------
@@ -106,52 +104,47 @@ def _train(loaded: LoadedCase, structure: Structure) -> Train:
 def _crossing(loaded: LoadedCase, structure: Structure, train: Train) -> Crossing:
     case = loaded.case.crossing
     with pointing(loaded, "crossing.irregularity"):
-        profile = _profile(case.irregularity)
-    return Crossing(
+        profile = irregularity_of(case.irregularity, structure)
+    others = []
+    for number, other in enumerate(loaded.case.other_trains):
+        path = f"other_trains.{number}"
+        with pointing(loaded, f"{path}.irregularity"):
+            own = None if other.irregularity is None else irregularity_of(other.irregularity, structure)
+        with pointing(loaded, path):
+            _require_lines(other, structure)
+        made = train_of(loaded, structure, f"{path}.train", other.train, _lines(other))
+        with pointing(loaded, path):
+            others.append(OtherTrain(train=made, irregularity=own, **_movement(other)))
+    crossing = Crossing(
         structure,
         train,
-        speed=case.speed,
-        speed_history=case.speed_history,
-        start=case.start,
         irregularity=profile,
         gravity=loaded.case.analysis.gravity,
+        others=tuple(others),
+        **_movement(case),
     )
+    _ = crossing.runs  # lines of irregularities are there
+    return crossing
 
 
-def _profile(case: Any) -> Profile:
-    if case is None or isinstance(case, case_crossing.NoIrregularity):
-        return profiles.Smooth()
-    if isinstance(case, case_crossing.HarmonicIrregularity):
-        return profiles.Harmonic(case.amplitude, case.wavelength, case.phase, case.from_, case.to)
-    if isinstance(case, case_crossing.TableIrregularity):
-        table: Profile
-        if case.points is not None:
-            points = np.array(case.points)
-            table = profiles.Table(points[:, 0], points[:, 1])
-        else:
-            assert case.file is not None  # the schema asks for one of the two
-            table = profiles.Table.from_csv(case.file)
-        return _bounded(table, case)
-    shape = profiles.spectrum(case.name)
-    low, high = case.wavelengths or shape.wavelengths
-    length = 20.0 * high if case.components is None else case.components / (1.0 / low - 1.0 / high)
-    try:
-        realized = profiles.realize(shape, length, seed=case.seed, wavelengths=(low, high))
-    except InputError as error:
-        if error.field != "length":
-            raise
-        field = "wavelengths" if case.components is None else "components"
-        raise InputError(
-            error.rule, field=field, fix="Use a narrower band of wavelengths, or fewer components"
-        ) from error
-    scaled = realized if case.scale == 1.0 else profiles.Scaled(realized, case.scale)
-    return _bounded(scaled, case)
+def _movement(case: case_crossing.Movement) -> dict[str, Any]:
+    names = ("speed", "speed_history", "acceleration", "to_speed", "start", "direction", "delay")
+    return {name: getattr(case, name) for name in names} | {"line": case.line or case.lines}
 
 
-def _bounded(profile: Profile, case: case_crossing.Bounded) -> Profile:
-    if case.from_ is None and case.to is None:
-        return profile
-    return profiles.Bounded(profile, case.from_, case.to)
+def _lines(case: case_crossing.Movement) -> Mapping[str, str]:
+    """Lines of the structure by those that wheels name."""
+    return case.lines or ({MAIN_LINE: case.line} if case.line is not None else {})
+
+
+def _require_lines(case: case_crossing.Movement, structure: Structure) -> None:
+    """The lines that a movement names are there."""
+    for name, line in _lines(case).items():
+        try:
+            structure.line(line)
+        except InputError as error:
+            field = "line" if case.line is not None else f"lines.{name}"
+            raise InputError(error.rule, field=field, value=line, fix=error.fix) from error
 
 
 def _method(loaded: LoadedCase) -> Alpha | None:
@@ -175,12 +168,13 @@ def _options(analysis: Any, output: Any, made: BuiltStructure) -> Mapping[str, A
         "time_step": analysis.time_step,
         "steps": analysis.step_count,
         "footprint": None if analysis.footprint == "auto" else float(analysis.footprint),
+        "sleepers": analysis.load_distribution.spacing if analysis.load_distribution else None,
         "coupling": analysis.method,
         "solver": analysis.solver,
         "every": output.every,
         "reactions": output.reactions,
         "sensors": {
-            name: made.sensor_position(at, f"output.sensors.{name}") for name, at in output.sensors.items()
+            name: made.sensor_place(at, f"output.sensors.{name}") for name, at in output.sensors.items()
         },
         "iteration": Iteration(**iteration),
         "basis": analysis.basis,
@@ -190,4 +184,5 @@ def _options(analysis: Any, output: Any, made: BuiltStructure) -> Mapping[str, A
         "section_forces": output.section_forces,
         "stresses": output.stresses,
         "envelopes": output.envelopes,
+        "line_points": output.line,
     }

@@ -54,7 +54,7 @@ def require_stable(structure: Structure, case: case_structure.Structure) -> None
 def _most_elements(case: case_structure.Structure) -> int:
     if isinstance(case, case_structure.SimpleSpan):
         return case.elements
-    if isinstance(case, case_structure.ContinuousBeam):
+    if isinstance(case, (case_structure.ContinuousBeam, case_structure.SimpleSpans, case_structure.Frame)):
         return max(span.elements or 0 for span in case.spans)
     return 0
 

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from axlespan.bridges import continuous_beam, simple_span
+from typing import Any
+
+from axlespan.bridges import Column, Station, continuous_beam, frame, simple_span, simple_spans
 from axlespan.running.structure import Structure
 from axlespan.study import case_structure
 from axlespan.study.build_matrices import structure_of_matrices
 from axlespan.study.build_mesh import structure_of_mesh
 from axlespan.study.build_supports import damping_of, supports_of_beams
+from axlespan.study.build_track import laid_on, structure_of_track
 from axlespan.study.built import BuiltStructure
 from axlespan.study.case_imported import MeshStructure
+from axlespan.study.case_track import TrackStructure
 
 
 def structure_of(case: case_structure.Structure) -> BuiltStructure:
@@ -21,9 +25,15 @@ def structure_of(case: case_structure.Structure) -> BuiltStructure:
         If something is wrong that only shows now; fields are paths under the structure.
     """
     if isinstance(case, case_structure.SimpleSpan):
-        return BuiltStructure(_simple_span(case))
+        return laid_on(BuiltStructure(_simple_span(case)), case.track)
     if isinstance(case, case_structure.ContinuousBeam):
-        return BuiltStructure(_continuous_beam(case))
+        return laid_on(BuiltStructure(_continuous_beam(case)), case.track)
+    if isinstance(case, case_structure.SimpleSpans):
+        return laid_on(BuiltStructure(_simple_spans(case)), case.track)
+    if isinstance(case, case_structure.Frame):
+        return laid_on(BuiltStructure(_frame(case)), case.track)
+    if isinstance(case, TrackStructure):
+        return structure_of_track(case)
     if isinstance(case, MeshStructure):
         return structure_of_mesh(case)
     return structure_of_matrices(case)
@@ -45,19 +55,54 @@ def _simple_span(case: case_structure.SimpleSpan) -> Structure:
 
 
 def _continuous_beam(case: case_structure.ContinuousBeam) -> Structure:
-    spans = case.spans
-    return continuous_beam(
-        spans=[span.length for span in spans],
-        youngs_modulus=[_given(span.youngs_modulus) for span in spans],
-        second_moment=[_given(span.second_moment) for span in spans],
-        mass_per_length=[_given(span.mass_per_length) for span in spans],
-        elements=[int(_given(span.elements)) for span in spans],
-        area=[span.area for span in spans],
-        shear_area=[span.shear_area for span in spans],
-        poisson_ratio=[0.2 if span.poisson_ratio is None else span.poisson_ratio for span in spans],
-        damping=damping_of(case.damping),
-        supports=supports_of_beams(case.supports),
+    return continuous_beam(**_spans(case), supports=supports_of_beams(case.supports))
+
+
+def _simple_spans(case: case_structure.SimpleSpans) -> Structure:
+    bearings = case.bearings
+    return simple_spans(
+        **_spans(case),
+        bearing_stiffness=bearings.stiffness if bearings else None,
+        bearing_damping=bearings.damping if bearings else None,
     )
+
+
+def _frame(case: case_structure.Frame) -> Structure:
+    columns = [
+        Column(
+            position=column.at,
+            height=column.height,
+            youngs_modulus=column.youngs_modulus,
+            second_moment=column.second_moment,
+            area=column.area,
+            mass_per_length=column.mass_per_length or 0.0,
+            top=column.top,
+            base=column.base,
+            base_stiffness=column.base_stiffness.given() if column.base_stiffness else None,
+        )
+        for column in case.columns
+    ]
+    return frame(**_spans(case), columns=columns, supports=supports_of_beams(case.supports) or ())
+
+
+def _spans(
+    case: case_structure.ContinuousBeam | case_structure.SimpleSpans | case_structure.Frame,
+) -> dict[str, Any]:
+    """What the decks of several spans have in common."""
+    spans = case.spans
+    stations = [Station(item.at, item.second_moment, item.mass_per_length) for item in case.stations or ()]
+    return {
+        "spans": [span.length for span in spans],
+        "youngs_modulus": [_given(span.youngs_modulus) for span in spans],
+        "second_moment": [_given(span.second_moment) for span in spans],
+        "mass_per_length": [_given(span.mass_per_length) for span in spans],
+        "elements": [int(_given(span.elements)) for span in spans],
+        "area": [span.area for span in spans],
+        "shear_area": [span.shear_area for span in spans],
+        "poisson_ratio": [0.2 if span.poisson_ratio is None else span.poisson_ratio for span in spans],
+        "damping": damping_of(case.damping),
+        "stations": stations if case.stations is not None else None,
+    }
 
 
 def _given(value: float | None) -> float:

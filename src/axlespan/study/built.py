@@ -10,6 +10,7 @@ import numpy as np
 from axlespan.errors import InputError
 from axlespan.running.path import PolynomialPath
 from axlespan.running.structure import Structure
+from axlespan.study.case_analysis import SensorOnLine
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,8 +22,18 @@ class BuiltStructure:
     warnings: tuple[str, ...] = ()
     dof_at: Callable[[str, str], str] | None = None  # vertical d.o.f. of a node that a case names at a place
 
-    def sensor_position(self, at: float | str, place: str) -> float:
-        """Position of a sensor along the first running line [m].
+    def sensor_place(self, at: float | str | SensorOnLine, place: str) -> float | tuple[str, float]:
+        """Position of a sensor on the line for sensors [m], or a line and its position; see sensor_position."""
+        if not isinstance(at, SensorOnLine):
+            return self.sensor_position(at, place)
+        try:
+            self.structure.line(at.line)
+        except InputError as error:
+            raise InputError("no such running line", field=f"{place}.line", fix=error.fix) from None
+        return at.line, self.sensor_position(at.at, f"{place}.at", at.line)
+
+    def sensor_position(self, at: float | str, place: str, line: str | None = None) -> float:
+        """Position of a sensor along a running line, that for sensors by default [m].
 
         Parameters
         ----------
@@ -41,7 +52,7 @@ class BuiltStructure:
         if self.dof_at is None:
             fix = "Write a length, such as 12.5 m"
             raise InputError("must be a position; the structure has no named nodes", field=place, fix=fix)
-        system, path = self.structure.system, self.structure.line()
+        system, path = self.structure.system, self.structure.line(line or self.structure.sensor_line)
         own = system.elimination[[system.dof(self.dof_at(at, place))]].toarray()[0]
         rows = path.rows(path.breaks, system.size)
         miss = np.asarray(rows.multiply(rows).sum(axis=1)).ravel() - 2.0 * (rows @ own) + own @ own

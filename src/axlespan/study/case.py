@@ -7,9 +7,11 @@ from typing import Annotated, Any, Self
 from pydantic import Field, model_validator
 
 from axlespan.errors import InputError
-from axlespan.study.case_analysis import Analysis, Output
+from axlespan.study.case_analysis import Analysis, Output, SensorOnLine
+from axlespan.study.case_assessment import Assessment
 from axlespan.study.case_crossing import Crossing
-from axlespan.study.case_structure import ContinuousBeam, SimpleSpan, Structure
+from axlespan.study.case_other_trains import OtherTrain
+from axlespan.study.case_structure import ContinuousBeam, Frame, SimpleSpan, SimpleSpans, Structure
 from axlespan.study.case_train import Entry, check_order
 from axlespan.study.checks import Part
 from axlespan.study.faults import InputErrors
@@ -32,36 +34,47 @@ class Case(Part):
     """What crosses it: entries of equal vehicles, from the head of the train."""
     crossing: Annotated[Crossing, Field(examples=["{speed: 80 km/h}"])]
     """How it moves, on what surface."""
+    other_trains: Annotated[
+        tuple[OtherTrain, ...], Field(examples=["[{train: [{vehicle: ice3}], speed: 80 km/h}]"])
+    ] = ()
+    """Further trains that are under way at the same time."""
     analysis: Annotated[Analysis, Field(examples=["{time_step: 1 ms, steps: 14000}"])]
     """Time integration."""
     output: Output = Output()
     """What is recorded."""
+    assessment: Annotated[Assessment | None, Field(examples=["{line_speed: 300 km/h}"])] = None
+    """Rules of the code that the run is assessed by; none when left out."""
 
     @model_validator(mode="after")
     def _fits_together(self) -> Self:
-        faults = [*_empty_train(self), *_sensors_off(self), *_records_late(self), *_fields_late(self)]
-        try:
-            check_order(self.train)
-        except InputErrors as errors:
-            faults += [InputError(e.rule, field=f"train.{e.field}", fix=e.fix) for e in errors.errors]
+        faults = [*_sensors_off(self), *_records_late(self), *_fields_late(self)]
+        others = ((f"other_trains.{n}.train", other.train) for n, other in enumerate(self.other_trains))
+        for path, train in (("train", self.train), *others):
+            faults += _empty_train(train, path)
+            try:
+                check_order(train)
+            except InputErrors as errors:
+                faults += [InputError(e.rule, field=f"{path}.{e.field}", fix=e.fix) for e in errors.errors]
         if faults:
             raise InputErrors(faults)
         return self
 
 
-def _empty_train(case: Case) -> list[InputError]:
-    if case.train:
+def _empty_train(train: tuple[Entry, ...], path: str) -> list[InputError]:
+    if train:
         return []
-    return [InputError("has no vehicle", field="train", fix="Write train: [{vehicle: ice3, count: 8}]")]
+    return [InputError("has no vehicle", field=path, fix="Write train: [{vehicle: ice3, count: 8}]")]
 
 
 def _sensors_off(case: Case) -> list[InputError]:
     """Find sensors that are not on a beam."""
     beam = case.structure
-    if not isinstance(beam, (SimpleSpan, ContinuousBeam)):
+    if not isinstance(beam, (SimpleSpan, ContinuousBeam, SimpleSpans, Frame)):
         return []
     faults = []
     for name, at in case.output.sensors.items():
+        if isinstance(at, SensorOnLine):
+            continue  # lines are known when the structure is built
         if isinstance(at, str):
             rule = "must be a position along the beam; it has no named nodes"
             faults.append(

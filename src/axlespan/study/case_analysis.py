@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Annotated, Any, Final, Literal, Self
 
 from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, model_validator
@@ -10,14 +11,15 @@ from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, model_va
 from axlespan.errors import InputError
 from axlespan.interaction.outputs import ENVELOPES
 from axlespan.study.check_lists import Several
-from axlespan.study.checks import Location, Measured, OneOf, Part
+from axlespan.study.checks import Location, Measured, OneOf, Part, Whole
 from axlespan.study.faults import InputErrors, listed, nearest
 from axlespan.study.kinds import LIST, MAPPING, Kinds, list_or_mapping, tag
 from axlespan.study.quantities import Count, Duration, Factor, Flag, Footprint, Gravity, Stiffness, Text
-from axlespan.units import HERTZ_STIFFNESS, NUMBER, RATIO, TIME
+from axlespan.units import HERTZ_STIFFNESS, LENGTH, NUMBER, RATIO, TIME
 
 METHODS: Final = ("direct", "iterative", "refactored")
 BASES: Final = ("full", "reduced")
+VEHICLES: Final = ("full", "moving-masses", "axle-loads")
 CONTACTS: Final = ("rigid", "unilateral", "hertz", "linear-spring")
 COMPARISONS: Final = ("neves2012-3.1", "neves2012-3.2")
 AVAILABLE_BASES: Final = ("full", "reduced")
@@ -75,6 +77,21 @@ def _either_end(schema: dict[str, Any]) -> None:
     schema["oneOf"] = [{"required": ["steps"]}, {"required": ["duration"]}]
 
 
+class ThreeSleepers(Part):
+    """25, 50 and 25 % of a wheel's force on three sleepers, EN 1991-2 6.3.6.1; they move with the wheel."""
+
+    kind: Literal["sleepers"]
+    spacing: Annotated[float, Measured(LENGTH, above=0.0, at_most=3.0)] = 0.6
+    """Spacing of the sleepers."""
+
+
+_DISTRIBUTIONS = Kinds("load distribution", ("sleepers",), "sleepers", words_alone=("sleepers",))
+
+
+def _read_distribution(raw: Any) -> Any:
+    return None if raw is None or raw == "point" else _DISTRIBUTIONS.checked(raw)
+
+
 class Analysis(Part):
     """Time integration by the alpha method, and how contact is treated."""
 
@@ -104,12 +121,18 @@ class Analysis(Part):
         kind="rigid"
     )
     """Contact of wheel and surface."""
+    vehicles: Annotated[str, OneOf(VEHICLES)] = "full"
+    """Vehicles as they are, as masses that follow the line, or as moving forces of their axle loads."""
     footprint: Annotated[
         Annotated[Literal["auto"], tag("word")] | Annotated[Footprint, tag("length")],
         Discriminator(lambda raw: "<word>" if raw == AUTO else "<length>"),
         BeforeValidator(_read_footprint),
     ] = AUTO
     """Length over which a wheel spreads its force; 0 for a point."""
+    load_distribution: Annotated[
+        ThreeSleepers | None, BeforeValidator(_read_distribution), Field(examples=["sleepers"])
+    ] = None
+    """How an axle load reaches a structure without track: in one point, or by three sleepers."""
     tolerance: Factor | None = None
     """Of the iterative method: change of the contact forces, relative to the largest, at which it stops."""
     relaxation: Annotated[float, Measured(NUMBER, above=0.0, at_most=1.0)] | None = None
@@ -167,19 +190,35 @@ class EveryFew(Part):
     """Steps from one field to the next."""
 
 
+class SensorOnLine(Part):
+    """A place on a running line that it names."""
+
+    at: Annotated[float | str, Location(), Field(examples=["12.5 m"])]
+    """Position along the line, or the name of a node of a mesh."""
+    line: Annotated[Text, Field(examples=["rail"])]
+    """Running line: rail, deck; left and right of two rails; those of a mesh by their names."""
+
+
+SensorPlace = Annotated[
+    Annotated[float | str, Location(), tag("place")] | Annotated[SensorOnLine, MAPPING],
+    Discriminator(lambda raw: MAPPING.tag if isinstance(raw, (Mapping, Part)) else "<place>"),
+]
+
+
 class Output(Part):
     """What is recorded."""
 
-    sensors: Annotated[
-        dict[Text, Annotated[float | str, Location()]], Field(examples=["{midspan: 12.5 m}"])
-    ] = {}  # noqa: RUF012
-    """Places on the structure by their names: a position along it, or the name of a node of a mesh."""
+    sensors: Annotated[dict[Text, SensorPlace], Field(examples=["{midspan: 12.5 m}"])] = {}  # noqa: RUF012
+    """Places on the structure by their names: a position along it (on the deck where it has a track), the name of
+    a node of a mesh, or {at: 12.5 m, line: rail}."""
     compare: Annotated[str, OneOf(COMPARISONS)] | None = None
     """A published example whose figures are drawn beside its semi-analytical solution."""
     every: Count = 1
     """Steps from one record to the next."""
     reactions: Flag = True
     """Whether support reactions are recorded."""
+    line: Annotated[int, Whole(at_least=0, at_most=2000)] = 41
+    """Points along the deck at which displacement and acceleration are recorded; 0 for none."""
     fields: (
         Annotated[
             Annotated[
@@ -205,6 +244,8 @@ class Output(Part):
     @model_validator(mode="after")
     def _named(self) -> Self:
         faults = []
+        if self.line == 1:
+            faults.append(InputError("must be 0 or at least 2", field="line", fix="Write 41, or 0 for none"))
         sensors = (("section_forces", self.section_forces), ("stresses", self.stresses))
         for key, number, name in ((key, i, name) for key, names in sensors for i, name in enumerate(names)):
             if name not in self.sensors:

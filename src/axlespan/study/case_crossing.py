@@ -1,4 +1,4 @@
-"""The crossing: how the train moves, and on what surface."""
+"""The crossing: how trains move, and on what surface."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, ConfigDict, Field, ValidationInfo, field_v
 
 from axlespan.errors import InputError
 from axlespan.study.check_lists import Several, Table
-from axlespan.study.checks import Measured, Part
+from axlespan.study.checks import Measured, OneOf, Part
 from axlespan.study.faults import listed, nearest
 from axlespan.study.kinds import ExistingFile, Kinds, tag
 from axlespan.study.quantities import (
@@ -18,15 +18,19 @@ from axlespan.study.quantities import (
     UNEVENNESS,
     Angle,
     Count,
+    Delay,
     Factor,
     Length,
+    Name,
     Seed,
+    SpanLength,
     Speed,
     Text,
+    TrainAcceleration,
     Unevenness,
     Wavelength,
 )
-from axlespan.units import LENGTH, TIME
+from axlespan.units import LENGTH, SPEED, TIME, show
 
 
 class Bounded(Part):
@@ -102,6 +106,18 @@ class SpectrumIrregularity(Bounded):
     """Number of harmonics."""
     scale: Factor = 1.0
     """Factor on the heights."""
+    rails: Annotated[tuple[Name, ...] | None, Field(examples=["[left, right]"])] = None
+    """Lines of the left and the right rail, whose profiles the level and the cross level of the track make."""
+    base: Annotated[SpanLength | None, Field(examples=["1.5 m"])] = None
+    """Distance of the rails, for spectra of the cross level that are angles; 1.5 m when left out."""
+
+    @model_validator(mode="after")
+    def _two_rails(self) -> Self:
+        if self.rails is not None and (len(self.rails) != 2 or self.rails[0] == self.rails[1]):
+            raise InputError("must be two different lines", field="rails", fix="Write [left, right]")
+        if self.base is not None and self.rails is None:
+            raise InputError("goes with rails", field="base", fix="Add rails: [left, right]")
+        return self
 
     @field_validator("name", mode="after")
     @classmethod
@@ -117,9 +133,47 @@ class SpectrumIrregularity(Bounded):
         return name
 
 
-KINDS = Kinds(
+_ONE = Kinds(
     "irregularity",
     ("none", "harmonic", "table", "spectrum"),
+    "{kind: harmonic, amplitude: 0.5 mm, wavelength: 5 m}",
+    words_alone=("none",),
+)
+_OfOneLine = Annotated[
+    Annotated[NoIrregularity, tag("none")]
+    | Annotated[HarmonicIrregularity, tag("harmonic")]
+    | Annotated[TableIrregularity, tag("table")]
+    | Annotated[SpectrumIrregularity, tag("spectrum")],
+    _ONE.discriminator(),
+    BeforeValidator(_ONE.checked),
+]
+
+
+class LinesIrregularity(Part):
+    """An irregularity for each of several running lines; lines that are not named are even."""
+
+    kind: Literal["lines"]
+    lines: Annotated[
+        dict[str, Annotated[_OfOneLine, Field(json_schema_extra=_ONE.words_in_schema)]],
+        Field(examples=["{left: {kind: harmonic, amplitude: 1 mm, wavelength: 5 m}}"]),
+    ]
+    """Irregularities by the names of lines."""
+
+    @model_validator(mode="after")
+    def _of_one_each(self) -> Self:
+        for name, one in self.lines.items():
+            if isinstance(one, SpectrumIrregularity) and one.rails is not None:
+                raise InputError(
+                    "goes with a spectrum for the whole track",
+                    field=f"lines.{name}.rails",
+                    fix="Write irregularity: {kind: spectrum, ..., rails: [left, right]}",
+                )
+        return self
+
+
+KINDS = Kinds(
+    "irregularity",
+    ("none", "harmonic", "table", "spectrum", "lines"),
     "{kind: harmonic, amplitude: 0.5 mm, wavelength: 5 m}",
     words_alone=("none",),
 )
@@ -127,7 +181,8 @@ Irregularity = Annotated[
     Annotated[NoIrregularity, tag("none")]
     | Annotated[HarmonicIrregularity, tag("harmonic")]
     | Annotated[TableIrregularity, tag("table")]
-    | Annotated[SpectrumIrregularity, tag("spectrum")],
+    | Annotated[SpectrumIrregularity, tag("spectrum")]
+    | Annotated[LinesIrregularity, tag("lines")],
     KINDS.discriminator(),
     BeforeValidator(KINDS.checked),
 ]
@@ -137,23 +192,38 @@ def _either_speed(schema: dict[str, Any]) -> None:
     schema["oneOf"] = [{"required": ["speed"]}, {"required": ["speed_history"]}]
 
 
-class Crossing(Part):
-    """How the train moves: at one speed, or by a history of it."""
+class Movement(Part):
+    """How a train moves: at one speed, with an acceleration, or by a history of its speed."""
 
     model_config = ConfigDict(json_schema_extra=_either_speed)
 
     speed: Annotated[Speed | None, Field(examples=["80 km/h"])] = None
-    """Constant speed."""
+    """Speed, constant unless there is an acceleration."""
     speed_history: (
         Annotated[tuple[tuple[float, float], ...], Table(Measured(TIME, at_least=0.0), TRAIN_SPEED)] | None
     ) = None
     """Pairs of time and speed, linear between them and constant after the last."""
-    start: Length = 0.0
-    """Position of the first wheel at t = 0: negative before the structure."""
-    irregularity: Annotated[Irregularity, Field(json_schema_extra=KINDS.words_in_schema)] = NoIrregularity(
-        kind="none"
-    )
-    """Irregularity of the surface; none when left out."""
+    acceleration: Annotated[TrainAcceleration | None, Field(examples=["0.5 m/s^2"])] = None
+    """Constant acceleration from t = 0 on; negative brakes, to a stop unless to_speed is given."""
+    to_speed: Annotated[Speed | None, Field(examples=["120 km/h"])] = None
+    """Speed at which the acceleration ends."""
+    start: Length | None = None
+    """Position of the first wheel at t = 0, negative before the structure; 0 or, backward, the end of the line."""
+    direction: Annotated[str, OneOf(("forward", "backward"))] = "forward"
+    """Along increasing positions, or against them."""
+    line: Annotated[Name | None, Field(examples=["track2"])] = None
+    """Running line of the wheels that name none."""
+    lines: Annotated[dict[str, Name] | None, Field(examples=["{left: left2, right: right2}"])] = None
+    """Running lines of the structure, by the lines that the wheels name."""
+    delay: Delay = 0.0
+    """The train is at its start this much later than t = 0; before, it runs at its first speed."""
+
+    @property
+    def stands(self) -> bool:
+        """Whether it never moves."""
+        if self.speed_history is not None:
+            return not any(v for _, v in self.speed_history)
+        return self.speed == 0.0 and (self.acceleration or 0.0) <= 0.0
 
     @model_validator(mode="after")
     def _moves(self) -> Self:
@@ -163,10 +233,10 @@ class Crossing(Part):
             raise InputError("says again what speed says", field="speed_history", fix="Keep one of the two")
         if self.speed_history is not None and self.speed_history[0][0] != 0.0:
             raise InputError("must begin at 0 s", field="speed_history.0.0", fix="Add the speed at 0 s")
-        standing = self.speed == 0.0 or (
-            self.speed_history is not None and not any(v for _, v in self.speed_history)
-        )
-        if standing and "start" not in self.model_fields_set:
+        if self.line is not None and self.lines is not None:
+            raise InputError("says again what line says", field="lines", fix="Keep one of the two")
+        self._accelerates()
+        if self.stands and "start" not in self.model_fields_set:
             field = "speed" if self.speed_history is None else "speed_history"
             raise InputError(
                 "must be positive for a train that crosses",
@@ -174,3 +244,31 @@ class Crossing(Part):
                 fix="A train that stands needs start: 12.5 m",
             )
         return self
+
+    def _accelerates(self) -> None:
+        """Check acceleration and to_speed."""
+        if self.acceleration is None:
+            if self.to_speed is not None:
+                fix = "Add acceleration: 0.5 m/s^2"
+                raise InputError("needs an acceleration", field="to_speed", fix=fix)
+            return
+        if self.speed is None:
+            raise InputError("goes with speed", field="acceleration", fix="Leave it out: speed_history says it")
+        if self.acceleration == 0.0:
+            raise InputError("must not be zero", field="acceleration", fix="Leave it out for a constant speed")
+        if self.to_speed is not None and (self.to_speed - self.speed) * self.acceleration <= 0.0:
+            way = "more" if self.acceleration > 0.0 else "less"
+            raise InputError(
+                f"must be {way} than the speed, {show(self.speed, SPEED)}",
+                field="to_speed",
+                fix="A train that brakes has a negative acceleration" if way == "more" else None,
+            )
+
+
+class Crossing(Movement):
+    """How the first train moves, and on what surface."""
+
+    irregularity: Annotated[Irregularity, Field(json_schema_extra=KINDS.words_in_schema)] = NoIrregularity(
+        kind="none"
+    )
+    """Irregularity of the surface; none when left out."""

@@ -8,6 +8,8 @@ All positions are distances behind the first wheel. A car on two axles, free to 
       suspensions:
         - {between: [body, wheel1], stiffness: 600 kN/m, damping: 10 kNs/m}
         - {between: [body, wheel2], stiffness: 600 kN/m, damping: 10 kNs/m}
+
+Wheels with a gauge run on the lines ``left`` and ``right``; bodies then roll where they have a roll_inertia.
 """
 
 from __future__ import annotations
@@ -22,11 +24,25 @@ from axlespan.errors import InputError
 from axlespan.study.case_placing import Placed
 from axlespan.study.checks import Part
 from axlespan.study.faults import InputErrors, listed, nearest
-from axlespan.study.quantities import Dashpot, Distance, Inertia, Length, Name, PartMass, SpringStiffness
+from axlespan.study.quantities import (
+    BodyForce,
+    BodyMoment,
+    Dashpot,
+    Distance,
+    Flag,
+    Inertia,
+    Length,
+    Name,
+    PartMass,
+    RollDashpot,
+    RollStiffness,
+    Spacing,
+    SpringStiffness,
+)
 
 
 class Body(Part):
-    """A rigid body: it moves up and down and, where it has an inertia, pitches."""
+    """A rigid body: it moves up and down and, where it has the inertias for it, pitches and rolls."""
 
     name: Annotated[Name, Field(examples=["body"])]
     """Name, as in the d.o.f. ``1.body.z`` and ``1.body.pitch``."""
@@ -36,6 +52,12 @@ class Body(Part):
     """Moment of inertia about its transverse axis; without it the body does not pitch."""
     position: Annotated[Length, Field(examples=["2.5 m"])]
     """Distance of its center of gravity behind the first wheel."""
+    roll_inertia: Inertia | None = None
+    """Moment of inertia about its longitudinal axis; without it the body does not roll."""
+    height: Distance | None = None
+    """Height of its center of gravity above the rails, where lateral loads act."""
+    side: Length = 0.0
+    """Distance of its center of gravity to the left of the middle."""
 
 
 class Wheel(Part):
@@ -46,11 +68,19 @@ class Wheel(Part):
     position: Annotated[Distance, Field(examples=["2.5 m"])]
     """Distance behind the first wheel."""
     mass: PartMass = 0.0
-    """Mass."""
+    """Mass of the wheelset, or of each of two independent wheels."""
+    gauge: Annotated[Spacing | None, Field(examples=["1.5 m"])] = None
+    """Distance between its left and its right wheel, which run on the lines left and right."""
+    roll_inertia: Inertia | None = None
+    """Moment of inertia of a wheelset in roll; when left out, half of the mass is at each wheel."""
+    independent: Flag = False
+    """Whether no axle joins its two wheels."""
+    radius: Annotated[Spacing | None, Field(examples=["0.46 m"])] = None
+    """Rolling radius."""
 
 
 class Suspension(Part):
-    """A spring and a dashpot side by side between two bodies, or a body and a wheel."""
+    """A spring and a dashpot side by side between two bodies, or a body and a wheel; or two such pairs, left and right."""
 
     between: Annotated[tuple[Name, ...], Field(examples=["[body, wheel1]"])]
     """Names of the two that it connects."""
@@ -60,10 +90,44 @@ class Suspension(Part):
     """Damping of the dashpot."""
     at: Length | None = None
     """Distance behind the first wheel; when left out, at the wheel or at the center of the second body."""
+    spread: Annotated[Spacing | None, Field(examples=["2.0 m"])] = None
+    """Distance between two of them, left and right, each with this stiffness and damping."""
+    side: Length | None = None
+    """Distance of a single one to the left of the middle."""
+    roll_stiffness: RollStiffness = 0.0
+    """Stiffness of an anti-roll bar between the two."""
+    roll_damping: RollDashpot = 0.0
+    """Damping of roll between the two."""
+
+
+class Hinge(Part):
+    """A point where two bodies move up and down together and turn freely, such as a fifth wheel."""
+
+    between: Annotated[tuple[Name, ...], Field(examples=["[tractor, trailer]"])]
+    """Names of the two bodies."""
+    at: Length
+    """Distance behind the first wheel."""
+
+
+class BodyLoad(Part):
+    """Constant forces and moments on a body, such as cross-wind; displacements count from the position under them."""
+
+    body: Name
+    """Name of the body."""
+    z: BodyForce = 0.0
+    """Force at the center of gravity, upward."""
+    y: Annotated[BodyForce, Field(examples=["-60 kN"])] = 0.0
+    """Force to the left; negative: wind from the left."""
+    height: Distance | None = None
+    """Height of the lateral force above the rails; that of the body when left out."""
+    roll: BodyMoment = 0.0
+    """Moment about x; positive lifts the left side."""
+    pitch: BodyMoment = 0.0
+    """Moment about y; positive lowers the front."""
 
 
 class Multibody(Placed):
-    """A vehicle of rigid bodies, wheels and suspensions in the vertical plane along the track.
+    """A vehicle of rigid bodies, wheels and suspensions, in the vertical plane along the track or on two rails.
 
     Once validated, wheels have names and suspensions their positions.
     """
@@ -79,6 +143,10 @@ class Multibody(Placed):
         tuple[Suspension, ...], Field(examples=["[{between: [body, wheel1], stiffness: 600 kN/m}]"])
     ]
     """Suspensions."""
+    hinges: tuple[Hinge, ...] = ()
+    """Hinges between bodies."""
+    loads: tuple[BodyLoad, ...] = ()
+    """Constant loads on bodies."""
 
     @property
     def wheel_positions(self) -> tuple[float, ...]:
@@ -106,7 +174,8 @@ class Multibody(Placed):
             for suspension in named.suspensions
         )
         complete = named.model_copy(update={"suspensions": suspensions})
-        complete._check_held()
+        if not self.hinges and all(wheel.gauge is None for wheel in wheels):
+            complete._check_held()
         complete.require_room(wheels[-1].position)
         return complete
 
@@ -152,7 +221,9 @@ class Multibody(Placed):
                     faults.append(
                         InputError("no such body or wheel", field=f"{field}.between.{end}", fix=fix)
                     )
-            if suspension.stiffness == suspension.damping == 0.0:
+            if not any(
+                (suspension.stiffness, suspension.damping, suspension.roll_stiffness, suspension.roll_damping)
+            ):
                 faults.append(
                     InputError("has no stiffness and no damping", field=field, fix="Add stiffness: 600 kN/m")
                 )

@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from axlespan.errors import InputError
 from axlespan.study.checks import Part
-from axlespan.study.quantities import Distance, Few, Name, Spacing
+from axlespan.study.quantities import Distance, Few, Flag, Name, Spacing
 from axlespan.units import LENGTH, show
 
 
@@ -25,6 +25,8 @@ class Placed(Part):
     """Distance of the first wheel behind the first wheel of the train."""
     line: Annotated[Name | None, Field(examples=["left"])] = None
     """Running line of the structure that its wheels run on; the main one when left out."""
+    reversed: Flag = False
+    """Whether each vehicle runs the other way round, its last wheel ahead."""
 
     @property
     def needs_spacing(self) -> bool:

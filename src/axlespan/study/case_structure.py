@@ -10,18 +10,22 @@ from axlespan.errors import InputError
 from axlespan.study.case_damping import StructuralDamping
 from axlespan.study.case_imported import MeshStructure
 from axlespan.study.case_matrices import MatricesStructure
-from axlespan.study.case_support import Support
-from axlespan.study.checks import Part
+from axlespan.study.case_support import Springs, Support
+from axlespan.study.case_track import Track, TrackStructure
+from axlespan.study.checks import OneOf, Part
 from axlespan.study.faults import InputErrors
 from axlespan.study.kinds import Kinds, tag
 from axlespan.study.quantities import (
     Area,
+    Dashpot,
     Elements,
+    Length,
     MassPerLength,
     Modulus,
     PoissonRatio,
     SecondMoment,
     SpanLength,
+    Stiffness,
 )
 from axlespan.units import LENGTH, show
 
@@ -59,6 +63,8 @@ class SimpleSpan(Part):
     """Poisson's ratio, for the shear modulus."""
     supports: tuple[Support, ...] | None = None
     """Supports in place of the two at the ends."""
+    track: Annotated[Track | None, Field(examples=["{kind: ballasted, preset: zhai-2004}"])] = None
+    """Track on the bridge, before and behind it; wheels run on the deck when left out."""
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
@@ -93,19 +99,30 @@ class Span(BeamProperties):
     """Distance between the supports of the span."""
 
 
-class ContinuousBeam(BeamProperties):
-    """A beam over several spans, supported at the ends of each; ``supports`` replaces them where it is given.
+class SectionAt(Part):
+    """A section of a beam at one place; between places it varies linearly."""
 
-    Once validated, each span holds all of its properties.
-    """
+    at: Annotated[Length, Field(examples=["0 m"])]
+    """Position along the beam."""
+    second_moment: SecondMoment | None = None
+    """Second moment of area there, in place of that of the span."""
+    mass_per_length: MassPerLength | None = None
+    """Mass per length there, in place of that of the span."""
 
-    kind: Literal["continuous-beam"]
+
+class _Spans(BeamProperties):
+    """A deck over several spans. Once validated, each span holds all of its properties."""
+
     spans: Annotated[tuple[Span, ...], Field(examples=["[{length: 20 m}, {length: 25 m}]"])]
     """The spans, in the direction of travel."""
+    stations: Annotated[
+        tuple[SectionAt, ...] | None, Field(examples=["[{at: 0 m, second_moment: 2 m^4}, ...]"])
+    ] = None
+    """Sections that vary along the deck."""
     damping: StructuralDamping | None = None
     """Structural damping; none when left out."""
-    supports: tuple[Support, ...] | None = None
-    """Supports in place of those at the ends of the spans."""
+    track: Annotated[Track | None, Field(examples=["{kind: ballasted, preset: zhai-2004}"])] = None
+    """Track on the bridge, before and behind it; wheels run on the deck when left out."""
 
     @property
     def length(self) -> float:
@@ -139,8 +156,90 @@ class ContinuousBeam(BeamProperties):
             raise InputErrors(missing)
         for number, span in enumerate(spans):
             _check_shear(span, f"spans.{number}.")
-        _check_supports(self.supports, self.length)
         return self.model_copy(update={"spans": spans})
+
+
+class ContinuousBeam(_Spans):
+    """A beam over several spans, supported at the ends of each; ``supports`` replaces them where it is given."""
+
+    kind: Literal["continuous-beam"]
+    supports: tuple[Support, ...] | None = None
+    """Supports in place of those at the ends of the spans."""
+
+    @model_validator(mode="after")
+    def _on_the_beam(self) -> Self:
+        _check_supports(self.supports, self.length)
+        return self
+
+
+class Bearing(Part):
+    """A bearing that gives way."""
+
+    stiffness: Annotated[Stiffness, Field(examples=["2 GN/m"])]
+    """Vertical stiffness."""
+    damping: Dashpot | None = None
+    """Vertical dashpot beside it."""
+
+
+class SimpleSpans(_Spans):
+    """Simply supported decks one behind the other, each on its own bearings."""
+
+    kind: Literal["simple-spans"]
+    bearings: Bearing | None = None
+    """Bearings at both ends of each deck; rigid when left out."""
+
+
+class ColumnUnder(Part):
+    """A column, pier or abutment wall under the deck."""
+
+    at: Annotated[Length, Field(examples=["0 m"])]
+    """Position along the deck."""
+    height: Annotated[SpanLength, Field(examples=["8 m"])]
+    """From the axis of the deck down to the foot."""
+    youngs_modulus: Annotated[Modulus, Field(examples=["34 GPa"])]
+    """Young's modulus."""
+    second_moment: SecondMoment
+    """Second moment of area for bending in the plane of the frame."""
+    area: Area
+    """Area of the cross-section."""
+    mass_per_length: MassPerLength | None = None
+    """Mass of the column; none when left out."""
+    top: Annotated[str, OneOf(("rigid", "hinged"))] = "rigid"
+    """Joint with the deck."""
+    base: Annotated[str, OneOf(("fixed", "pinned"))] = "fixed"
+    """What holds the foot."""
+    base_stiffness: Springs | None = None
+    """Springs of the foundation, in place of base; x and z are rigid where it does not name them."""
+
+
+class Frame(_Spans):
+    """A deck on columns that it is one with: portal frames, integral bridges, viaducts."""
+
+    kind: Literal["frame"]
+    columns: Annotated[
+        tuple[ColumnUnder, ...], Field(examples=["[{at: 0 m, height: 8 m, second_moment: 0.2 m^4, ...}]"])
+    ]
+    """Columns under the deck."""
+    supports: tuple[Support, ...] | None = None
+    """Other supports of the deck: bearings, springs of the soil behind an abutment."""
+
+    @model_validator(mode="after")
+    def _stands(self) -> Self:
+        _check_supports(self.supports, self.length)
+        faults = []
+        if not self.columns:
+            faults.append(InputError("has no column", field="columns", fix="Use kind: continuous-beam"))
+        for number, column in enumerate(self.columns):
+            if not -1e-9 * self.length <= column.at <= (1.0 + 1e-9) * self.length:
+                rule = f"must lie on the deck, from 0 to {show(self.length, LENGTH, 6)}"
+                faults.append(InputError(rule, field=f"columns.{number}.at"))
+        for number, span in enumerate(self.spans):
+            if span.area is None:
+                rule = "is missing; the deck of a frame is pushed along its axis"
+                faults.append(InputError(rule, field=f"spans.{number}.area", fix="Add area: 4 m^2"))
+        if faults:
+            raise InputErrors(faults)
+        return self
 
 
 def _check_shear(beam: SimpleSpan | Span, prefix: str = "") -> None:
@@ -178,14 +277,17 @@ def _check_supports(supports: tuple[Support, ...] | None, length: float) -> None
 
 KINDS = Kinds(
     "structure",
-    ("simple-span", "continuous-beam", "mesh", "matrices"),
+    ("simple-span", "continuous-beam", "mesh", "matrices", "simple-spans", "frame", "track"),
     "{kind: simple-span, length: 25 m, ...}",
 )
 Structure = Annotated[
     Annotated[SimpleSpan, tag("simple-span")]
     | Annotated[ContinuousBeam, tag("continuous-beam")]
     | Annotated[MeshStructure, tag("mesh")]
-    | Annotated[MatricesStructure, tag("matrices")],
+    | Annotated[MatricesStructure, tag("matrices")]
+    | Annotated[SimpleSpans, tag("simple-spans")]
+    | Annotated[Frame, tag("frame")]
+    | Annotated[TrackStructure, tag("track")],
     KINDS.discriminator(),
     BeforeValidator(KINDS.checked),
 ]

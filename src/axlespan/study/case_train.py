@@ -3,33 +3,39 @@
 Where vehicles stand: ``spacing`` is the distance from the first wheel of one vehicle of an entry to the first
 wheel of the next. The first vehicle of a later entry follows the last one of the entry before at that entry's
 ``spacing``, first wheel to first wheel, unless it has a word of its own: ``gap``, the distance of its first
-wheel behind the last wheel ahead, or ``offset``, that behind the first wheel of the train.
+wheel behind the last wheel ahead, or ``offset``, that behind the first wheel of the train. Vehicles of the
+library know their lengths and need none of these words: they stand buffer to buffer.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Discriminator, ValidationInfo, model_validator
 
 from axlespan.errors import InputError
-from axlespan.study.case_multibody import Multibody
+from axlespan.study.case_multibody import BodyLoad, Multibody
 from axlespan.study.case_placing import Placed
 from axlespan.study.case_vehicle_imported import MatricesVehicle, MeshVehicle
 from axlespan.study.check_lists import Several
 from axlespan.study.faults import InputErrors, listed, nearest
-from axlespan.study.kinds import Kinds, tag
+from axlespan.study.kinds import ExistingFile, Kinds, tag
 from axlespan.study.quantities import (
     AXLE_LOAD,
     DISTANCE,
     SPACING,
     BodyMass,
     Dashpot,
+    Few,
     PartMass,
+    Spacing,
     Stiffness,
     Text,
 )
+from axlespan.vehicles import library, load_trains
 
 
 class SprungMass(Placed):
@@ -68,16 +74,20 @@ class AxleLoads(Placed):
     """Forces that move over the structure, without masses: one vehicle is one group of axles."""
 
     vehicle: Literal["axle-loads"]
-    loads: Annotated[tuple[float, ...], Several(AXLE_LOAD, example="[170 kN, 170 kN]", alone=True)]
+    loads: (
+        Annotated[tuple[float, ...], Several(AXLE_LOAD, example="[170 kN, 170 kN]", alone=True)] | None
+    ) = None
     """Weight on each axle, positive; one value holds for all axles."""
     positions: Annotated[tuple[float, ...], Several(DISTANCE, "[0 m, 3 m]", increasing=True)] | None = None
     """Distance of each axle behind the first."""
     spacings: Annotated[tuple[float, ...], Several(SPACING, "[3 m, 11 m, 3 m]")] | None = None
     """Distances from each axle to the next, in place of positions."""
+    file: Annotated[Path, ExistingFile()] | None = None
+    """Text file with columns ``position [m]`` and ``load [kN]``, in place of loads and positions."""
 
     @property
     def wheel_positions(self) -> tuple[float, ...]:
-        """Distances of the axles behind the first [m]."""
+        """Distances of the axles behind the first [m], those of a file excepted."""
         if self.positions is not None:
             return self.positions
         at = [0.0]
@@ -88,10 +98,18 @@ class AxleLoads(Placed):
     @property
     def axle_loads(self) -> tuple[float, ...]:
         """Weight on each axle [N]."""
-        return self.loads if len(self.loads) > 1 else self.loads * len(self.wheel_positions)
+        loads = self.loads or ()
+        return loads if len(loads) > 1 else loads * len(self.wheel_positions)
 
     @model_validator(mode="after")
     def _as_many(self) -> Self:
+        if self.file is not None:
+            for name in ("loads", "positions", "spacings"):
+                if getattr(self, name) is not None:
+                    raise InputError("says again what the file says", field=name, fix="Keep one of the two")
+            return self
+        if self.loads is None:
+            raise InputError("is missing", field="loads", fix="Add loads: [170 kN, 170 kN], or file: axles.csv")
         if self.positions is not None and self.spacings is not None:
             raise InputError("says again what positions say", field="spacings", fix="Keep one of the two")
         if self.positions is not None and self.positions[0] != 0.0:
@@ -111,17 +129,66 @@ class AxleLoads(Placed):
         return self
 
 
+class HslmB(Placed):
+    """Load model HSLM-B of EN 1991-2, 6.4.6.1.1: equal forces at equal distances.
+
+    Their number and distance depend on the span; read them from figure 6.14 of the standard.
+    """
+
+    vehicle: Literal["hslm-b"]
+    forces: Few | None = None
+    """Number of forces, N."""
+    distance: Spacing | None = None
+    """Distance of the forces, d."""
+    load: Annotated[float, AXLE_LOAD] = 170e3
+    """Each force."""
+
+    @property
+    def wheel_positions(self) -> tuple[float, ...]:
+        """Distances of the forces behind the first [m]."""
+        return tuple(number * (self.distance or 0.0) for number in range(self.forces or 1))
+
+    @model_validator(mode="after")
+    def _given(self) -> Self:
+        for name in ("forces", "distance"):
+            if getattr(self, name) is None:
+                example = "forces: 15" if name == "forces" else "distance: 3.5 m"
+                raise InputError(
+                    "is missing: it depends on the span, and the figure that gives it is not part of axlespan",
+                    field=name,
+                    fix=f"Read N and d for your span from EN 1991-2, figure 6.14; then add {example}",
+                )
+        self.require_room(self.wheel_positions[-1])
+        return self
+
+
 class LibraryVehicle(Placed):
-    """A vehicle or a whole train from the library, by its name; ``axlespan library`` lists them."""
+    """A vehicle or a whole train from the library, by its name, or a file of one's own.
+
+    ``axlespan library`` lists the names.
+    """
 
     vehicle: Text
-    """Name in the library: ``ice3``, ``hslm-a1``, ..."""
+    """Name in the library: ``ice3``, ``hslm-a1``, ...; or a file, relative to this one: ``my-wagon.yaml``."""
+    loads: tuple[BodyLoad, ...] = ()
+    """Constant loads on bodies of each vehicle, such as cross-wind."""
+
+    @property
+    def is_file(self) -> bool:
+        """Whether a file describes it."""
+        return self.vehicle.endswith(FILES)
 
     @property
     def needs_spacing(self) -> bool:
         """Whether several such vehicles need a spacing: the library knows it."""
         return False
 
+
+#: A load train that asks for more than its name.
+HSLM_B = "hslm-b"
+
+#: How names of files that describe a vehicle end.
+FILES = (".yaml", ".yml")
 
 KINDS = Kinds(
     "vehicle",
@@ -131,15 +198,25 @@ KINDS = Kinds(
 )
 
 
+def library_names() -> tuple[str, ...]:
+    """Names of all vehicles, trains and load trains of the library."""
+    return (*library.names(), *load_trains.names(), HSLM_B)
+
+
 def _known(raw: Any, info: ValidationInfo) -> Any:
     """Check the word under ``vehicle``: a kind, or a name in the library (context ``vehicles``)."""
     word = raw.get("vehicle") if isinstance(raw, dict) else None
-    library: Sequence[str] = tuple((info.context or {}).get("vehicles", ()))
     if not isinstance(word, str) or word in KINDS.names:
         return KINDS.checked(raw)
-    near = nearest(word, (*KINDS.names, *library))
-    if word in library or (not library and near is None):
+    if word == HSLM_B:
         return raw
+    if word.endswith(FILES):
+        ExistingFile().read(word, info, "vehicle")
+        return raw
+    names: Sequence[str] = tuple((info.context or {}).get("vehicles", ())) or library_names()
+    if word in names:
+        return raw
+    near = nearest(word, (*KINDS.names, *names))
     others = f"Kinds are {listed(KINDS.names)}; axlespan library lists the vehicles"
     raise InputError(
         "no such kind of vehicle, and none in the library",
@@ -151,7 +228,7 @@ def _known(raw: Any, info: ValidationInfo) -> Any:
 
 def _kind(raw: Any) -> str:
     word = raw["vehicle"] if isinstance(raw, dict) else getattr(raw, "vehicle", "")
-    return f"<{word if word in KINDS.names else 'library'}>"
+    return f"<{word if word in (*KINDS.names, HSLM_B) else 'library'}>"
 
 
 Entry = Annotated[
@@ -161,6 +238,7 @@ Entry = Annotated[
     | Annotated[Multibody, tag("multibody")]
     | Annotated[MeshVehicle, tag("mesh")]
     | Annotated[MatricesVehicle, tag("matrices")]
+    | Annotated[HslmB, tag("hslm-b")]
     | Annotated[LibraryVehicle, tag("library")],
     Discriminator(_kind),
     BeforeValidator(_known),
@@ -201,35 +279,67 @@ def check_order(train: Sequence[Placed]) -> None:
         raise InputErrors(faults)
 
 
-def first_wheels(
-    train: Sequence[Placed], wheelbases: Sequence[float], pitches: Sequence[float | None]
-) -> tuple[tuple[float, ...], ...]:
-    """Return how far the first wheel of each vehicle is behind the first wheel of the train [m].
+@dataclass(frozen=True)
+class Unit:
+    """What repeats in an entry: a vehicle, or a train of the library."""
+
+    wheelbase: float  # from the first wheel to the last [m]
+    count: int = 1
+    pitch: float | None = None  # that the library gives, first wheel to first [m]
+    front: float | None = None  # from the front buffer to the first wheel [m], where it is known
+    rear: float | None = None  # from the last wheel to the rear buffer [m]
+
+
+def first_wheels(train: Sequence[Placed], units: Sequence[Unit]) -> tuple[tuple[float, ...], ...]:
+    """Return how far the first wheel of each unit is behind the first wheel of the train [m].
 
     Parameters
     ----------
     train : sequence of Placed
         The entries.
-    wheelbases : sequence of float, shape (n_entry,)
-        Distance from first to last wheel of a vehicle of each entry [m].
-    pitches : sequence of float or None, shape (n_entry,)
-        Spacing that the library gives where the entry has none [m].
+    units : sequence of Unit
+        What repeats in each of them.
 
     Returns
     -------
     tuple of tuple of float
-        For each entry, for each of its vehicles.
+        For each entry, for each of its units.
+
+    Raises
+    ------
+    InputError
+        If an entry needs a spacing that nothing gives; the field counts from the train: ``"1.gap"``.
     """
     placed: list[tuple[float, ...]] = []
-    last, room = 0.0, 0.0
-    for number, (entry, wheelbase, pitch) in enumerate(zip(train, wheelbases, pitches, strict=True)):
-        spacing = entry.spacing if entry.spacing is not None else pitch
+    for number, (entry, unit) in enumerate(zip(train, units, strict=True)):
+        step = entry.spacing if entry.spacing is not None else unit.pitch
+        if step is None and unit.count > 1:
+            raise InputError(
+                f"is missing for {unit.count} vehicles, and the library does not know it",
+                field=f"{number}.spacing",
+                fix="Add spacing: 25 m, first wheel to first",
+            )
+        head = 0.0
         if entry.offset is not None:
             head = entry.offset
-        elif entry.gap is not None:
-            head = last + wheelbases[number - 1] + entry.gap
-        else:
-            head = last + room if number else 0.0
-        placed.append(tuple(head + vehicle * (spacing or 0.0) for vehicle in range(entry.count)))
-        last, room = placed[-1][-1], spacing if spacing is not None else wheelbase
+        elif number:
+            head = placed[-1][-1] + _room(number, train[number - 1], entry, units[number - 1], unit)
+        placed.append(tuple(head + i * (step or 0.0) for i in range(unit.count)))
     return tuple(placed)
+
+
+def _room(number: int, ahead: Placed, entry: Placed, first: Unit, second: Unit) -> float:
+    """From the first wheel of the unit ahead to that of an entry [m]."""
+    if entry.gap is not None:
+        return first.wheelbase + entry.gap
+    if ahead.spacing is not None:
+        return ahead.spacing
+    if first.rear is not None and second.front is not None:
+        return first.wheelbase + first.rear + second.front
+    if first.pitch is not None:
+        return first.pitch
+    raise InputError(
+        f"does not say where it stands: the library does not know the length of train.{number - 1}",
+        field=str(number),
+        fix="Add gap: 3 m, its distance behind the last wheel ahead",
+    )

@@ -107,30 +107,30 @@ def list_or_mapping(raw: Any) -> str:
 class ExistingFile:
     """A file that the case names, relative to the folder of the case file (validation context ``folder``)."""
 
-    def read(self, raw: Any, info: ValidationInfo) -> Path:
-        """Return the path of the file, which exists."""
+    def read(self, raw: Any, info: ValidationInfo, field: str | None = None) -> Path:
+        """Return the path of the file, which exists; ``field`` is its key where it stands in a mapping."""
         if isinstance(raw, Path):
             raw = str(raw)
         if not isinstance(raw, str) or not raw.strip() or "\0" in raw:
-            raise InputError("must be the name of a file", value=raw)
+            raise InputError("must be the name of a file", field=field, value=raw)
         folder = Path((info.context or {}).get("folder", "."))
         path = folder / raw.strip()
         try:
             found = path.is_file()
             others = [p.name for p in path.parent.iterdir()] if not found and path.parent.is_dir() else []
         except OSError as error:
-            raise InputError(f"cannot be read: {error.strerror}", value=raw) from None
+            raise InputError(f"cannot be read: {error.strerror}", field=field, value=raw) from None
         if found:
             return path
         if path.is_dir():
-            raise InputError("is a folder, not a file", value=raw)
+            raise InputError("is a folder, not a file", field=field, value=raw)
         near = nearest(path.name, others, likeness=0.8)
         where = folder.resolve() if not path.is_absolute() else path.parent
         fix = f"Did you mean {near}?" if near else f"Names are relative to the case file's folder, {where}"
-        raise InputError("no such file", value=raw, fix=fix)
+        raise InputError("no such file", field=field, value=raw, fix=fix)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.with_info_plain_validator_function(self.read)
+        return core_schema.with_info_plain_validator_function(lambda raw, info: self.read(raw, info))
 
     def __get_pydantic_json_schema__(
         self, schema: CoreSchema, handler: GetJsonSchemaHandler

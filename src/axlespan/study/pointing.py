@@ -55,6 +55,9 @@ def _candidates(section: str, error: InputError) -> list[str]:
     field = error.field
     if not field:
         return [section]
+    if field.startswith("others."):  # further trains of a crossing
+        place = f"other_trains.{field.removeprefix('others.')}"
+        return [place, ".".join(place.split(".")[:2])]
     if field == "support":
         found = _SUPPORT.match(str(error.value))
         number = 0 if not found or found[1] else 1 if found[2] else int(found[3]) - 1

@@ -19,6 +19,7 @@ from axlespan.units import (
     LENGTH,
     MASS,
     MASS_PER_LENGTH,
+    MOMENT,
     NUMBER,
     PER_TIME,
     PRESSURE,
@@ -43,6 +44,7 @@ Distance = Annotated[float, DISTANCE]
 Spacing = Annotated[float, SPACING]
 Unevenness = Annotated[float, UNEVENNESS]
 Speed = Annotated[float, TRAIN_SPEED]
+TrainAcceleration = Annotated[float, Measured(ACCELERATION, believable=(1e-3, 12.0))]
 Length = Annotated[float, Measured(LENGTH)]
 SpanLength = Annotated[float, Measured(LENGTH, above=0.0, believable=(0.05, 5e3))]
 Wavelength = Annotated[float, Measured(LENGTH, above=0.0, believable=(1e-3, 1e4))]
@@ -61,6 +63,10 @@ Stiffness = Annotated[float, Measured(STIFFNESS, above=0.0)]
 SpringStiffness = Annotated[float, Measured(STIFFNESS, at_least=0.0)]
 RotationalStiffness = Annotated[float, Measured(ROTATIONAL_STIFFNESS, above=0.0)]
 Dashpot = Annotated[float, Measured(DAMPING, at_least=0.0)]
+RollStiffness = Annotated[float, Measured(ROTATIONAL_STIFFNESS, at_least=0.0)]
+RollDashpot = Annotated[float, Measured(ROTATIONAL_DAMPING, at_least=0.0)]
+BodyForce = Annotated[float, Measured(FORCE)]
+BodyMoment = Annotated[float, Measured(MOMENT)]
 RotationalDashpot = Annotated[float, Measured(ROTATIONAL_DAMPING, at_least=0.0)]
 DampingRatio = Annotated[float, Measured(RATIO, at_least=0.0, below=1.0, believable=(1e-6, 0.3))]
 Frequency = Annotated[float, Measured(FREQUENCY, above=0.0)]

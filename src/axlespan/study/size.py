@@ -45,6 +45,7 @@ def size_of(plan: Plan) -> Size:
     settings, system = plan.settings, plan.crossing.structure.system
     n_contact, n_vehicle = plan.rows.n_contact, plan.fleet.matrices.size
     values = 2 * n_contact + 3 * n_vehicle + 3 * len(settings.sensors) + 4 * len(settings.section_forces)
+    values += 2 * len(settings.line_points)
     field = 2 * len(system.dof_names) + 3 * n_contact
     coupled = len(plan.fleet.coupled)
     start = _START_MATRICES * float(n_contact) ** 2 + 2.0 * coupled * (plan.structure.size + n_vehicle)

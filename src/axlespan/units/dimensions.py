@@ -93,11 +93,17 @@ ROTATIONAL_DAMPING: Final = Dimension(
     ("kNms/rad", "Nms/rad"),
     also=(2, 1, -1, 0),
 )
+DAMPING_PER_LENGTH: Final = Dimension(
+    "a damping constant per length", (-1, 1, -1, 0), "Ns/m^2", "80 kNs/m^2", ("MNs/m^2", "kNs/m^2", "Ns/m^2")
+)
+BENDING_STIFFNESS: Final = Dimension(
+    "a bending stiffness", (3, 1, -2, 0), "Nm^2", "100 MNm^2", ("GNm^2", "MNm^2", "kNm^2", "Nm^2")
+)
 
 _NAMED: Final = (
     *(RATIO, ANGLE, LENGTH, AREA, SECOND_MOMENT, MASS, INERTIA, MASS_PER_LENGTH, DENSITY, TIME, FREQUENCY),
     *(SPEED, ACCELERATION, FORCE, MOMENT, PRESSURE, STIFFNESS, ROTATIONAL_STIFFNESS, HERTZ_STIFFNESS),
-    *(DAMPING, ROTATIONAL_DAMPING),
+    *(DAMPING, ROTATIONAL_DAMPING, DAMPING_PER_LENGTH, BENDING_STIFFNESS),
 )
 
 

@@ -51,7 +51,8 @@ def sprung_mass(
     )
     if unsprung_mass > 0.0:
         model = model.with_mass("wheel1", unsprung_mass, directions=("z",))
-    return Vehicle((ContactPoint("1", 0.0, "wheel1.z"),), compile_model(model).system, name)
+    point = ContactPoint("1", 0.0, "wheel1.z")
+    return Vehicle((point,), compile_model(model).system, name, bodies={"body": 0.0})
 
 
 def rigid_mass(*, mass: float, name: str = "rigid mass") -> Vehicle:
@@ -148,7 +149,7 @@ def rigid_body(
         ContactPoint(str(i + 1), float(behind), f"wheel{i + 1}.z") for i, behind in enumerate(axles)
     )
     system = compile_model(model).system.renamed({"body.ry": "body.pitch"})
-    return Vehicle(points, system, name)
+    return Vehicle(points, system, name, bodies={"body": middle})
 
 
 def _each(values: float | Sequence[float], n: int, field: str) -> list[float]:

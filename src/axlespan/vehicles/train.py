@@ -14,6 +14,9 @@ from axlespan.vehicles.vehicle import GRAVITY, ContactPoint, Vehicle
 
 FloatArray = npt.NDArray[np.float64]
 
+# Buffers give way, and lengths are rounded [m].
+_BUFFERS = 0.1
+
 
 @dataclass(frozen=True, eq=False)
 class Placement:
@@ -97,7 +100,15 @@ class Train:
     @property
     def contact_names(self) -> tuple[str, ...]:
         """Names of the contacts, ``vehicle.wheel``, counted from the head."""
-        return tuple(name for name, *_ in self.contacts)
+        return self.names_from(0)
+
+    def names_from(self, first: int) -> tuple[str, ...]:
+        """Names of the contacts when so many vehicles of other trains are counted before."""
+        return tuple(
+            f"{first + i + 1}.{point.name}"
+            for i, item in enumerate(self.placements)
+            for point in item.vehicle.contacts
+        )
 
     @property
     def offsets(self) -> FloatArray:
@@ -116,3 +127,80 @@ class Train:
         loads = {key: vehicle.as_axle_loads(gravity) for key, vehicle in kinds.items()}
         placements = tuple(Placement(loads[id(item.vehicle)], item.behind) for item in self.placements)
         return Train(placements, f"{self.name} as axle loads")
+
+    def as_moving_masses(self, gravity: float = GRAVITY) -> Train:
+        """The same train as masses that follow the line, each wheel with the mass of its static load.
+
+        Wheels of trains that are given as forces become masses of force by gravity.
+        """
+        kinds = {id(item.vehicle): item.vehicle for item in self.placements}
+        masses = {key: vehicle.as_moving_masses(gravity) for key, vehicle in kinds.items()}
+        placements = tuple(Placement(masses[id(item.vehicle)], item.behind) for item in self.placements)
+        return Train(placements, f"{self.name} as moving masses")
+
+    def reversed(self) -> Train:
+        """The same train with its tail ahead: the last vehicle leads, every vehicle the other way round."""
+        kinds = {id(item.vehicle): item.vehicle for item in self.placements}
+        turned = {key: vehicle.reversed() for key, vehicle in kinds.items()}
+        last = self.wheelbase
+        placements = [
+            Placement(turned[id(item.vehicle)], last - item.behind - item.vehicle.wheelbase)
+            for item in self.placements
+        ]
+        return Train(tuple(sorted(placements, key=lambda item: item.behind)), f"{self.name} reversed")
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """How far the train reaches ahead of its head and behind it [m], over buffers where they are known."""
+        ahead = max(item.vehicle.front_overhang - item.behind for item in self.placements)
+        behind = max(
+            item.behind + item.vehicle.wheelbase + item.vehicle.rear_overhang for item in self.placements
+        )
+        return ahead, behind
+
+    def require_apart(self, lines: Sequence[str] | None = None) -> None:
+        """Require that no vehicle stands within another one on the same line.
+
+        Groups of moving forces without a length are no bodies: they may lie within each other.
+
+        Parameters
+        ----------
+        lines : sequence of str, shape (n_contact,), optional
+            Running lines of the wheels; those that their vehicles name when left out.
+
+        Raises
+        ------
+        InputError
+            With the vehicles and by how much they overlap.
+        """
+        lines = [point.line for _, _, point, _ in self.contacts] if lines is None else lines
+        foremost: dict[str, tuple[float, float, int]] = {}  # of each line: last buffer, last wheel, vehicle
+        wheel = 0
+        for number, item in enumerate(self.placements):
+            vehicle = item.vehicle
+            own = set(lines[wheel : wheel + len(vehicle.contacts)])
+            wheel += len(vehicle.contacts)
+            if vehicle.is_force and vehicle.length is None:
+                continue
+            for line in own & foremost.keys():
+                buffer, last, ahead = foremost[line]
+                if item.behind <= last or item.behind - vehicle.front_overhang < buffer - _BUFFERS:
+                    raise self._overlapping(ahead, number)
+            end = item.behind + vehicle.wheelbase
+            reach = end + vehicle.rear_overhang, end, number
+            foremost.update({line: max(reach, foremost.get(line, reach)) for line in own})
+
+    def _overlapping(self, early: int, late: int) -> InputError:
+        """What to say of two vehicles within each other."""
+        one, other = self.placements[early], self.placements[late]
+        pitch = other.behind - one.behind
+        if pitch <= one.vehicle.wheelbase:
+            known = f"whose last wheel is {one.vehicle.wheelbase:.4g} m behind it"
+        else:
+            room = one.vehicle.wheelbase + one.vehicle.rear_overhang + other.vehicle.front_overhang
+            known = f"which needs {room:.4g} m between buffers"
+        return InputError(
+            f"vehicle {late + 1} begins {pitch:.4g} m behind the first wheel of vehicle {early + 1}, {known}",
+            field="train",
+            fix="Look at spacing, gap and offset: vehicles must not overlap",
+        )

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -13,13 +14,29 @@ import scipy.sparse as sp
 from axlespan.errors import InputError
 from axlespan.linalg.eigen import lowest_modes
 from axlespan.linalg.factor import NotPositiveDefinite, factorize
-from axlespan.model.system import System
+from axlespan.model.compile import compile_model
+from axlespan.model.materials import require_positive
+from axlespan.model.model import Model
+from axlespan.model.system import Load, System
 from axlespan.running.structure import MAIN_LINE
+from axlespan.vehicles.loads import BodyLoad, load_vector
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 GRAVITY = 9.81  # [m/s^2]
+
+#: Names of the running lines of the left and the right wheels of vehicles in space.
+LEFT, RIGHT = "left", "right"
+
+
+class WheelLaw(Protocol):
+    """A law of contact; those there are live in :mod:`axlespan.contact.laws`."""
+
+    @property
+    def kind(self) -> str:
+        """Word of the law."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -31,6 +48,8 @@ class ContactPoint:
     dof: str | None = None  # d.o.f. of the vehicle; None: a force that moves along
     line: str = MAIN_LINE  # name of the running line
     force: float = 0.0  # [N] downward, of a moving force
+    law: WheelLaw | None = None  # of contact; None: that of the analysis
+    radius: float | None = None  # rolling radius [m], where the contact has a compliance of its own
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +66,8 @@ class Vehicle:
     length: float | None = None  # over buffers [m], for drawings and overlaps
     facts: Mapping[str, float] = field(default_factory=dict)
     is_multibody: bool = True  # of rigid bodies: all its periods matter; a mesh has far shorter ones
+    bodies: Mapping[str, float] = field(default_factory=dict)  # centers behind the first wheel [m], for drawings
+    overhang: float | None = None  # from the front buffer to the first wheel [m]; half of what is left if None
 
     def __post_init__(self) -> None:
         if not self.contacts:
@@ -83,6 +104,8 @@ class Vehicle:
     def static_forces(self, gravity: float = GRAVITY) -> FloatArray:
         """Contact forces (n_contact,) [N] on level ground, positive in compression.
 
+        Constant loads on bodies count; by linearity these are all that they change.
+
         Raises
         ------
         InputError
@@ -91,7 +114,8 @@ class Vehicle:
         if self.system is None:
             return np.array([point.force for point in self.contacts])
         blocks = self.system.partition
-        weight = self.system.weight(gravity)[self.system.free]
+        constant = [load.vector for load in self.system.loads if load.history is None]
+        weight = (self.system.weight(gravity) + sum(constant, np.zeros(self.system.size)))[self.system.free]
         x = self.contact_dofs
         rest = np.setdiff1d(np.arange(len(weight)), x)
         stiffness = sp.csr_array(blocks.K_FF)
@@ -109,7 +133,9 @@ class Vehicle:
                 "must press on the line when it stands still on level ground",
                 field=f"wheel '{self.contacts[worst].name}' of vehicle '{self.name}'",
                 value=f"{forces[worst]:.6g} N",
-                fix="Check the masses and the positions of the bodies over the wheels",
+                fix="Check the loads on its bodies: under them it would tip over"
+                if constant
+                else "Check the masses and the positions of the bodies over the wheels",
             )
         return np.asarray(forces)
 
@@ -149,7 +175,34 @@ class Vehicle:
         count = int(np.count_nonzero(mass.diagonal()))
         if count == 0:
             return np.empty(0)
-        return lowest_modes(stiffness, mass, min(count, 40)).frequencies
+        return lowest_modes(stiffness, mass, count if self.is_multibody else min(count, 40)).frequencies
+
+    @property
+    def total_mass(self) -> float:
+        """Mass of bodies and wheels [kg]; zero for moving forces."""
+        return 0.0 if self.system is None else self.system.total_mass()
+
+    def loaded(self, loads: Sequence[BodyLoad]) -> Vehicle:
+        """The same vehicle under constant forces and moments on its bodies, such as cross-wind.
+
+        Its displacements count from the static position under them. Heights of bodies come from ``facts``.
+
+        Raises
+        ------
+        InputError
+            If a body is unknown, or cannot turn about the axis of a moment.
+        """
+        if self.system is None:
+            raise InputError("has no bodies that could be loaded", field="loads", value=self.name)
+        heights = {
+            name.removesuffix(".height"): value for name, value in self.facts.items() if name.endswith(".height")
+        }
+        return replace(self, system=self.system.with_loads(Load(load_vector(self.system, loads, heights))))
+
+    def on_lines(self, lines: Mapping[str, str]) -> Vehicle:
+        """The same vehicle with its wheels on other running lines: ``{"left": "track2-left", ...}``."""
+        contacts = tuple(replace(point, line=lines.get(point.line, point.line)) for point in self.contacts)
+        return replace(self, contacts=contacts)
 
     def as_axle_loads(self, gravity: float = GRAVITY) -> Vehicle:
         """The same wheels as moving forces of their static loads."""
@@ -158,4 +211,70 @@ class Vehicle:
             replace(point, dof=None, force=float(force))
             for point, force in zip(self.contacts, forces, strict=True)
         )
-        return Vehicle(points, None, f"{self.name} as axle loads", self.length, self.facts)
+        return replace(self, contacts=points, system=None, bodies={}, name=f"{self.name} as axle loads")
+
+    def as_moving_masses(self, gravity: float = GRAVITY) -> Vehicle:
+        """The same wheels as masses that follow the line, each with the mass of its static load.
+
+        Raises
+        ------
+        InputError
+            Without gravity there are no static loads.
+        """
+        require_positive(gravity, "gravity")
+        forces = self.static_forces(gravity)
+        model = Model(plane=True)
+        points = []
+        for i, (point, force) in enumerate(zip(self.contacts, forces, strict=True)):
+            wheel = f"wheel{i + 1}"
+            model = model.with_nodes([[-point.behind, 0.0]], [wheel])
+            model = model.with_mass(wheel, float(force) / gravity, directions=("z",))
+            points.append(replace(point, dof=f"{wheel}.z", force=0.0))
+        name = f"{self.name} as moving masses"
+        system = compile_model(model).system
+        return replace(self, contacts=tuple(points), system=system, bodies={}, name=name, is_multibody=True)
+
+    def reversed(self) -> Vehicle:
+        """The same vehicle the other way round: its last wheel leads.
+
+        Contacts are numbered anew from the wheel that leads; d.o.f. keep their names and axes. Wheels of the lines
+        ``left`` and ``right`` change sides.
+        """
+        last = self.wheelbase
+        sides = {"left": "right", "right": "left"}
+        if {point.line for point in self.contacts} != set(sides):
+            sides = {}
+        turned = sorted(
+            (
+                replace(point, behind=last - point.behind, line=sides.get(point.line, point.line))
+                for point in self.contacts
+            ),
+            key=lambda point: (point.behind, -_rank(self.contacts, point.name)),
+        )
+        names = [point.name for point in self.contacts]
+        contacts = tuple(replace(point, name=name) for point, name in zip(turned, names, strict=True))
+        overhang = None if self.length is None else self.rear_overhang
+        bodies = {name: last - behind for name, behind in self.bodies.items()}
+        name = f"{self.name} reversed"
+        return replace(self, contacts=contacts, overhang=overhang, bodies=bodies, name=name)
+
+    @property
+    def wheelbase(self) -> float:
+        """Distance from the first wheel to the last [m]."""
+        return max(point.behind for point in self.contacts)
+
+    @property
+    def front_overhang(self) -> float:
+        """From the front buffer to the first wheel [m]; zero if the length is not known."""
+        if self.length is None:
+            return 0.0
+        return 0.5 * (self.length - self.wheelbase) if self.overhang is None else self.overhang
+
+    @property
+    def rear_overhang(self) -> float:
+        """From the last wheel to the rear buffer [m]; zero if the length is not known."""
+        return 0.0 if self.length is None else self.length - self.wheelbase - self.front_overhang
+
+
+def _rank(contacts: tuple[ContactPoint, ...], name: str) -> int:
+    return [point.name for point in contacts].index(name)

@@ -1,0 +1,89 @@
+"""Displacement, acceleration and twist along the deck at every n-th step, and the slope of its ends."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse as sp
+
+from axlespan.interaction.line_points import deck_line
+from axlespan.interaction.plan import Plan
+from axlespan.running.structure import Structure
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+#: Lines under the wheels of each side, and the length over which twist is measured [m].
+LEFT, RIGHT = "left", "right"
+TWIST_LENGTH = 3.0
+
+
+def twist_rows(structure: Structure, positions: FloatArray) -> sp.csr_array:
+    """Rows (n_position, n) of the twist [m] over 3 m around positions; none without a left and a right line.
+
+    Twist is the change of the left line's height over the right one's; near the ends of the lines the 3 m are the
+    last ones on them.
+    """
+    size = structure.system.size
+    if not {LEFT, RIGHT} <= set(structure.lines):
+        return sp.csr_array((0, size))
+    left, right = structure.lines[LEFT], structure.lines[RIGHT]
+    low, high = max(left.start, right.start), min(left.stop, right.stop) - TWIST_LENGTH
+    if high < low:
+        return sp.csr_array((0, size))
+    begin = np.clip(positions - 0.5 * TWIST_LENGTH, low, high)
+    cross = [left.rows(at, size) - right.rows(at, size) for at in (begin, begin + TWIST_LENGTH)]
+    return sp.csr_array(cross[1] - cross[0])
+
+
+class LineHistories:
+    """Keeps the deck's vertical motion at ``plan.settings.line_points``."""
+
+    def __init__(self, plan: Plan) -> None:
+        self._plan = plan
+        self.positions = np.array(plan.settings.line_points, dtype=float)  # (n_point,) [m]
+        system, path = plan.crossing.structure.system, deck_line(plan.crossing.structure)
+        self.ends = np.array([path.start, path.stop]) if len(self.positions) else np.zeros(0)
+        values, slopes = path.rows(self.positions, system.size), path.rows(self.ends, system.size, 1)
+        twists = twist_rows(plan.crossing.structure, self.positions)
+        both = sp.csr_array(sp.vstack([values, slopes, twists]))
+        free = sp.csc_array(both[:, system.free])
+        self.free_dofs: IntArray = np.unique(free.nonzero()[1]).astype(np.int64)
+        n = len(self.positions)
+        compact = sp.csr_array(free[:, self.free_dofs])
+        moved = sp.csr_array(both[:, system.prescribed[plan.moving]])
+        self._rows, self._moved = (compact, compact[:n]), (moved, moved[:n])
+        n_kept = plan.settings.steps // plan.settings.every + 1
+        self._motion = np.zeros((n_kept, both.shape[0]))
+        self._acceleration = np.zeros((n_kept, n))
+
+    def look(self, steps: IntArray, near: FloatArray, positions: FloatArray, forces: FloatArray) -> None:
+        """Look at consecutive steps: ``near`` (3, n_step, n_free) of ``free_dofs``."""
+        if not len(self.positions):
+            return
+        kept = np.flatnonzero(steps % self._plan.settings.every == 0)
+        into = steps[kept] // self._plan.settings.every
+        self._motion[into] = self._values(0, "value", steps[kept], near[0, kept])
+        self._acceleration[into] = self._values(1, "acceleration", steps[kept], near[2, kept])
+
+    def _values(self, which: int, name: str, steps: IntArray, near: FloatArray) -> FloatArray:
+        values = np.asarray((self._rows[which] @ near.T).T)
+        if len(self._plan.moving):
+            times, motions = self._plan.times_of(steps), self._plan.crossing.structure.system.motions
+            own = np.array([getattr(motions[j], name)(times) for j in self._plan.moving])
+            values = values + (self._moved[which] @ own).T
+        return values
+
+    def histories(self, n: int) -> dict[str, FloatArray]:
+        """The first n kept, by their names in a result; empty if nothing was asked for."""
+        if not len(self.positions):
+            return {}
+        count = len(self.positions)
+        return {
+            "line_position": self.positions,
+            "line_end": self.ends,
+            "line_displacement": self._motion[:n, :count],
+            "line_acceleration": self._acceleration[:n],
+            "line_slope": self._motion[:n, count : count + 2],
+            "line_twist": self._motion[:n, count + 2 :],
+        }

@@ -1,0 +1,195 @@
+r"""The nonlinear springs of a structure as unknowns of a step: their deviations from the reference stiffness.
+
+A spring of the law f(e, ė) has the reference stiffness k in the matrices of the structure. Displacements count from
+the state under the structure's own weight, where its elongation is e_0, so that
+
+.. math:: q(e, \dot e) = f(e_0 + e, \dot e) - f(e_0, 0) - k e
+
+is what the matrices leave out. A ballast spring that stays in compression has q = 0, and only those with q ≠ 0 are
+unknowns of a step.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse as sp
+
+from axlespan.errors import InputError
+from axlespan.linalg.factor import Factor
+from axlespan.model.motions import Constant
+from axlespan.model.system import SpringRows, System
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+_LIMIT, _TOLERANCE, _HALVINGS = 200, 1e-12, 12
+
+
+@dataclass(eq=False)
+class Springs:
+    """All nonlinear springs of a system, with what they remember.
+
+    ``base`` and ``state`` are those under the structure's own weight until a run goes on from there.
+    """
+
+    groups: tuple[SpringRows, ...]
+    rows: sp.csr_array  # (n_spring, n_free)
+    ground: sp.csr_array  # (n_spring, n_prescribed)
+    base: FloatArray  # e_0 (n_spring,) [m], gaps included
+    state: list[FloatArray]  # of each group (n, n_state)
+
+    @classmethod
+    def of(cls, system: System) -> Springs:
+        """Those of a system, unloaded.
+
+        Raises
+        ------
+        InputError
+            If one stands on a support that moves.
+        """
+        groups = system.nonlinear
+        if groups:
+            stacked = sp.csr_array(sp.vstack([group.rows for group in groups]))
+        else:
+            stacked = sp.csr_array((0, system.size))
+        rows, ground = stacked[:, system.free], stacked[:, system.prescribed]
+        moves = [not (isinstance(m, Constant) and m.amount == 0.0) for m in system.motions]
+        if groups and np.any(abs(ground).sum(axis=0)[np.array(moves, dtype=bool)] > 0.0):
+            raise InputError("must not stand on supports that move", field="nonlinear springs")
+        base = np.concatenate([group.gap for group in groups]) if groups else np.zeros(0)
+        state = [np.zeros((len(group.gap), group.law.n_state)) for group in groups]
+        return cls(groups, sp.csr_array(rows), sp.csr_array(ground), base, state)
+
+    @property
+    def n(self) -> int:
+        """Number of springs."""
+        return len(self.base)
+
+    @cached_property
+    def stiffness(self) -> FloatArray:
+        """Reference stiffness (n,) [N/m]."""
+        return np.concatenate([np.full(len(g.gap), g.law.stiffness) for g in self.groups] or [np.zeros(0)])
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """``name.number`` of each spring."""
+        return tuple(f"{g.name}.{i + 1}" for g in self.groups for i in range(len(g.gap)))
+
+    @cached_property
+    def slices(self) -> tuple[slice, ...]:
+        """Where each group stands among all springs."""
+        ends = np.cumsum([len(group.gap) for group in self.groups]).tolist()
+        return tuple(slice(end - len(g.gap), end) for end, g in zip(ends, self.groups, strict=True))
+
+    @cached_property
+    def held(self) -> FloatArray:
+        """f(e_0, 0) (n,) [N]: the forces under the structure's own weight."""
+        return self._forces(np.zeros(self.n), np.zeros(self.n))
+
+    def _forces(self, e: FloatArray, rate: FloatArray) -> FloatArray:
+        result, total = np.empty(self.n), self.base + e
+        for group, state, at in zip(self.groups, self.state, self.slices, strict=True):
+            result[at] = group.law.force(total[at], rate[at], state)
+        return result
+
+    def forces(self, e: FloatArray, rate: FloatArray) -> FloatArray:
+        """Total forces (n,) [N], own weight included."""
+        return self._forces(e, rate)
+
+    def deviation(self, e: FloatArray, rate: FloatArray) -> FloatArray:
+        """Q (n,) [N]; exactly zero, without the rounding, where the law follows its reference."""
+        result = self._forces(e, rate) - self.held
+        linear = self.stiffness * e
+        result -= linear
+        size = np.abs(linear) + np.abs(self.held)
+        result[np.abs(result) <= 1e-14 * size] = 0.0
+        return result
+
+    def tangent(self, e: FloatArray, rate: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Derivatives (n,) of the deviation to elongation and rate."""
+        k, c, total = np.empty(self.n), np.empty(self.n), self.base + e
+        for group, state, at in zip(self.groups, self.state, self.slices, strict=True):
+            k[at], c[at] = group.law.tangent(total[at], rate[at], state)
+        return k - self.stiffness, c
+
+    def static_deviation(self, e: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Q and its derivative at rest."""
+        still = np.zeros(self.n)
+        return self.deviation(e, still), self.tangent(e, still)[0]
+
+    def energy(self, e: FloatArray) -> FloatArray:
+        """Energy (n,) [J] of the springs."""
+        result, total = np.empty(self.n), self.base + e
+        for group, state, at in zip(self.groups, self.state, self.slices, strict=True):
+            result[at] = group.law.energy(total[at], state)
+        return result
+
+    def advance(self, e: FloatArray, rate: FloatArray) -> None:
+        """Remember a completed step."""
+        total = self.base + e
+        self.state = [
+            group.law.advanced(total[at], rate[at], state) if group.law.n_state else state
+            for group, state, at in zip(self.groups, self.state, self.slices, strict=True)
+        ]
+
+    def begin(self, e: FloatArray) -> None:
+        """Remember the static state at the start."""
+        self.held  # noqa: B018  # before the memory goes on
+        self.advance(e, np.zeros(self.n))
+
+    def preloaded(self, weight: FloatArray, stiffness: Factor) -> Springs:
+        """The springs under the structure's own weight: nodal loads (n_free,) [N] and the factor of K.
+
+        Raises
+        ------
+        InputError
+            If no equilibrium is found.
+        """
+        if not self.n:
+            return self
+        columns = stiffness.solve(np.ascontiguousarray(self.rows.T.toarray()))
+        compliance = np.asarray(self.rows @ columns)
+        free = np.asarray(self.rows @ stiffness.solve(np.array(weight)))
+        e = self._rest(free, 0.5 * (compliance + compliance.T))
+        before = Springs(self.groups, self.rows, self.ground, self.base.copy(), list(self.state))
+        before.advance(e, np.zeros(self.n))
+        return Springs(self.groups, self.rows, self.ground, self.base + e, before.state)
+
+    def _rest(self, free: FloatArray, compliance: FloatArray) -> FloatArray:
+        """Elongations (n,) of rest: e = e* - Z q(e), by Newton's method with line search."""
+        still, start = np.zeros(self.n), self.held + 0.0
+
+        def residual(q: FloatArray) -> tuple[FloatArray, FloatArray]:
+            e = free - compliance @ q
+            return q - (self.deviation(e, still) + start), e
+
+        q = np.zeros(self.n)
+        rest, e = residual(q)
+        scale = max(float(np.abs(self.stiffness * free).max()), 1.0)
+        for _ in range(_LIMIT):
+            if float(np.abs(rest).max()) <= _TOLERANCE * scale:
+                return e
+            jacobian = self.tangent(e, still)[0][:, None] * compliance
+            jacobian[np.diag_indices_from(jacobian)] += 1.0
+            step = np.linalg.solve(jacobian, rest)
+            share = 1.0
+            for _ in range(_HALVINGS):
+                new, at = residual(q - share * step)
+                if float(new @ new) < float(rest @ rest):
+                    break
+                share *= 0.5
+            else:
+                new, at = residual(q - step)
+                share = 1.0
+            q, rest, e = q - share * step, new, at
+        worst = self.names[int(np.argmax(np.abs(rest)))]
+        raise InputError(
+            "finds no equilibrium under its own weight",
+            field="structure",
+            value=f"spring {worst}",
+            fix="Check gaps and laws: is the structure held when springs part?",
+        )

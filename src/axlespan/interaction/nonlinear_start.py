@@ -1,0 +1,193 @@
+r"""How a run starts where contact or track is nonlinear: static equilibrium by Newton's method.
+
+With the static stiffness k of the vehicles, condensed to their contact points, and the static compliance Z of the
+structure under wheels and nonlinear springs, the unknowns are the contact points' displacements u_X and the
+springs' deviations q from their reference stiffness:
+
+.. math:: X = X_{st} + k u_X, \qquad δ = r + E u_0 - Z_{ww} X - Z_{ws} q - u_X, \qquad
+          e = B u_0 - Z_{sw} X - Z_{ss} q
+
+with X = F(δ), or δ = 0, or 0 <= X ⟂ δ <= 0 of the wheels' laws, and q = Q(e) of the springs.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse as sp
+
+from axlespan.contact.laws_of_wheels import WheelLaws
+from axlespan.dynamics.integrator import State
+from axlespan.errors import AnalysisError
+from axlespan.interaction.nonlinear_balance import Balance
+from axlespan.interaction.nonlinear_springs import Springs
+from axlespan.interaction.plan import Plan
+from axlespan.interaction.start import ContactRows, Start, StartFactors, condensed_stiffness
+from axlespan.linalg.factor import factorize
+
+FloatArray = npt.NDArray[np.float64]
+
+_LIMIT, _TOLERANCE, _HALVINGS = 100, 1e-12, 10
+
+
+@dataclass(frozen=True, eq=False)
+class NonlinearStart:
+    """The state at time zero, with what the interface remembers."""
+
+    start: Start
+    approach: FloatArray  # (n_coupled,) from the static one on level ground [m]
+    deviation: FloatArray  # (n_spring,) [N]
+    touching: npt.NDArray[np.bool_]  # (n_coupled,) constrained wheels on the line
+
+
+def nonlinear_start(
+    plan: Plan, laws: WheelLaws, balance: Balance, factors: StartFactors, springs: Springs
+) -> NonlinearStart:
+    """Static equilibrium, then the velocities and accelerations that the motion along the line asks for.
+
+    Raises
+    ------
+    AnalysisError
+        If the equilibrium is not found.
+    """
+    rows, fleet, x = balance.rows(0.0), plan.fleet, plan.fleet.coupled
+    statics = _Statics(plan, laws, rows, factors, springs)
+    u_x, deviation = statics.solve()
+    forces, approach, elongation = statics.at(u_x, deviation)
+    structure, vehicles = State.at_rest((plan.structure.size,)), State.at_rest((fleet.matrices.size,))
+    structure.u[:] = statics.deflection(forces, deviation)
+    vehicles.u[:] = _vehicles(plan, u_x)
+    touching = laws.rigid | (laws.unilateral & (forces > 0.0))
+    approach[touching] = 0.0
+    speed, _ = plan.rows.motion(0.0)
+    vehicles.v[fleet.dofs] = (rows.rate + speed * (rows.E1 @ structure.u))[x]
+    given = fleet.weight.copy()
+    given[x] = np.where(touching, 0.0, forces)
+    inner = -(springs.rows.T @ deviation) if springs.n else None
+    total, _ = balance.accelerate(rows, structure, vehicles, 0.0, touching, given, inner)
+    load = np.asarray(rows.E.T @ total)
+    if springs.n:
+        load = load + springs.rows.T @ deviation
+        springs.begin(elongation)
+    return NonlinearStart(Start(structure, vehicles, total, load), approach, deviation, touching)
+
+
+def _vehicles(plan: Plan, u_x: FloatArray) -> FloatArray:
+    """Displacements of the vehicles at rest with their contact points at u_X."""
+    fleet = plan.fleet
+    u = np.zeros(fleet.matrices.size)
+    u[fleet.dofs] = u_x
+    rest = np.setdiff1d(np.arange(fleet.matrices.size), fleet.dofs)
+    if len(rest) and np.any(u):
+        stiffness = sp.csr_array(fleet.matrices.K)
+        u[rest] = factorize(sp.csr_array(stiffness[rest][:, rest])).solve(-(stiffness[rest] @ u))
+    return u
+
+
+class _Statics:
+    """The equations of rest at time zero."""
+
+    def __init__(
+        self, plan: Plan, laws: WheelLaws, rows: ContactRows, factors: StartFactors, springs: Springs
+    ) -> None:
+        self.plan, self.laws, self.springs = plan, laws, springs
+        fleet, x = plan.fleet, plan.fleet.coupled
+        self.weight = fleet.weight[x]
+        self.k = condensed_stiffness(fleet)[np.ix_(x, x)]
+        external = plan.forces.static(0.0)
+        forced = fleet.forced
+        if len(forced):
+            external = external - rows.E[forced].T @ fleet.weight[forced]
+        E = rows.E[x]
+        self._B = sp.csr_array(sp.vstack([E, springs.rows])) if springs.n else E
+        n = plan.structure.size
+        self.columns = np.zeros((n, len(x) + springs.n))
+        self.u_0 = np.zeros(n)
+        if np.any(external):
+            self.u_0 = factors.stiffness.solve(np.array(external))
+        loaded = np.flatnonzero(np.asarray(abs(self._B).sum(axis=1)) > 0.0)
+        if len(loaded):
+            self.columns[:, loaded] = factors.stiffness.solve(
+                np.ascontiguousarray(self._B[loaded].T.toarray())
+            )
+        Z = np.asarray(self._B @ self.columns)
+        self.Z = 0.5 * (Z + Z.T)
+        self.free = np.asarray(self._B @ self.u_0)
+        self.free[: len(x)] += rows.height[x]
+        self.n_wheel = len(x)
+        self.scale = max(float(np.abs(fleet.weight).max(initial=0.0)), 1.0)
+        # A stiffness that turns gaps into forces, to tell who touches.
+        self.stiffness = max(float(np.abs(self.k).max(initial=0.0)), 1e3 * self.scale)
+
+    def deflection(self, forces: FloatArray, deviation: FloatArray) -> FloatArray:
+        """Displacements (n,) of the structure."""
+        return self.u_0 - self.columns @ np.concatenate([forces, deviation])
+
+    def at(self, u_x: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Contact forces, approaches and elongations."""
+        forces = self.weight + self.k @ u_x
+        d = self.free - self.Z @ np.concatenate([forces, q])
+        w = self.n_wheel
+        return forces, d[:w] - u_x, d[w:]
+
+    def residual(self, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Residual [N] and Jacobian."""
+        w, laws = self.n_wheel, self.laws
+        u_x, q = y[:w], y[w:]
+        forces, approach, elongation = self.at(u_x, q)
+        still = np.zeros(w)
+        slope, _ = laws.tangent(approach, still)
+        from_u = np.concatenate([self.k, np.zeros((len(q), w))])  # of [X, q]
+        from_q = np.concatenate([np.zeros((w, len(q))), np.eye(len(q))])
+        dp = np.hstack([from_u, from_q])
+        dd = -self.Z @ dp
+        dd[:w, :w] -= np.eye(w)
+        residual = np.empty(len(y))
+        jacobian = np.empty((len(y), len(y)))
+        residual[:w] = forces - laws.force(approach, still)
+        jacobian[:w] = dp[:w] - slope[:, None] * dd[:w]
+        held = laws.rigid | (laws.unilateral & (forces + self.stiffness * approach > 0.0))
+        residual[:w][held] = -self.stiffness * approach[held]
+        jacobian[:w][held] = -self.stiffness * dd[:w][held]
+        loose = laws.unilateral & ~held
+        residual[:w][loose] = forces[loose]
+        jacobian[:w][loose] = dp[:w][loose]
+        if len(q):
+            given, tangent = self.springs.static_deviation(elongation)
+            residual[w:] = q - given
+            jacobian[w:] = dp[w:] - tangent[:, None] * dd[w:]
+        return residual, jacobian
+
+    def solve(self) -> tuple[FloatArray, FloatArray]:
+        """u_X (n_coupled,) and q (n_spring,)."""
+        w = self.n_wheel
+        y = np.concatenate([self.free[:w] - self.Z[:w, :w] @ self.weight, np.zeros(self.springs.n)])
+        residual, jacobian = self.residual(y)
+        for _ in range(_LIMIT):
+            step = np.linalg.lstsq(jacobian, residual, rcond=1e-14)[0] if len(y) else y
+            size = float(residual @ residual)
+            share = 1.0
+            for _ in range(_HALVINGS):
+                tried = y - share * step
+                new, slope = self.residual(tried)
+                if float(new @ new) <= size:
+                    break
+                share *= 0.5
+            change = float(np.abs(tried - y).max(initial=0.0))
+            y, residual, jacobian = tried, new, slope
+            small = float(np.abs(residual).max(initial=0.0)) <= _TOLERANCE * self.scale
+            still = change <= 1e-15 and float(np.abs(residual).max(initial=0.0)) <= 1e-6 * self.scale
+            if small or still:  # rounding is all that is left under very stiff laws
+                return y[:w], y[w:]
+        worst = int(np.argmax(np.abs(residual)))
+        where = (
+            f"contact {self.plan.crossing.contact_names[int(self.plan.fleet.coupled[worst])]}"
+            if worst < self.n_wheel
+            else f"spring {self.springs.names[worst - self.n_wheel]}"
+        )
+        raise AnalysisError(
+            f"the static equilibrium at time zero was not found in {_LIMIT} iterations (residual "
+            f"{np.abs(residual).max():.3g} N at {where}). Start the train before the structure, or check the laws"
+        )

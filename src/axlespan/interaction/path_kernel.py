@@ -1,0 +1,85 @@
+"""Compliance of the structure under the wheels, E Z Eᵀ, compiled by numba."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from axlespan.linalg.compiled import Loop, compiled
+
+
+@cache
+def compiled_sandwich() -> Loop | None:
+    """Return :func:`sandwich` as machine code, or None without numba."""
+    return compiled(sandwich)
+
+
+def sandwich(
+    Z: Any, offset: Any, low: Any, high: Any, local: Any, weights: Any, result: Any
+) -> None:
+    """Fill in E Z Eᵀ (n_step, n_wheel, n_wheel), symmetric.
+
+    Parameters
+    ----------
+    Z : ndarray, shape (n_path, width)
+        Compliance of the path: row i begins at entry ``offset[i]``.
+    offset, low, high : ndarray of int, shape (n_path,)
+        Row i is zero but for ``low[i] <= j < high[i]``.
+    local, weights : ndarray, shape (n_step, n_wheel, n_local)
+        Rows of E: places on the path and weights.
+    """
+    n_step, n_wheel, n_local = local.shape
+    n_path, width = Z.shape
+    row = np.zeros(n_path)  # of E Z, for one wheel
+    # What the wheels load: places and weights, filled up to fours with weights of zero, and the range of the places.
+    fours = (n_local + 3) // 4
+    place, weight = np.zeros((n_wheel, 4 * fours), np.int64), np.zeros((n_wheel, 4 * fours))
+    count, lowest, highest = np.zeros(n_wheel, np.int64), np.zeros(n_wheel, np.int64), np.zeros(n_wheel, np.int64)
+    for k in range(n_step):
+        for i in range(n_wheel):
+            m, lowest[i], highest[i] = 0, n_path, 0
+            for a in range(n_local):
+                if weights[k, i, a] != 0.0:
+                    place[i, m], weight[i, m] = local[k, i, a], weights[k, i, a]
+                    lowest[i], highest[i] = min(lowest[i], place[i, m]), max(highest[i], place[i, m] + 1)
+                    m += 1
+            count[i] = m
+            while m % 4:
+                place[i, m], weight[i, m] = place[i, 0], 0.0
+                m += 1
+        for i in range(n_wheel):
+            reach, limit = n_path, 0  # of the rows of this wheel
+            for a in range(count[i]):
+                reach, limit = min(reach, low[place[i, a]]), max(limit, high[place[i, a]])
+            first, last = n_path, 0  # what this wheel and those after it load of that
+            for j in range(i, n_wheel):
+                if highest[j] > reach and lowest[j] < limit:
+                    first, last = min(first, lowest[j]), max(last, highest[j])
+            first, last = max(first, reach), min(last, limit)
+            for a in range(0, count[i], 4):
+                p0, p1, p2, p3 = place[i, a], place[i, a + 1], place[i, a + 2], place[i, a + 3]
+                o0, o1, o2, o3 = offset[p0], offset[p1], offset[p2], offset[p3]
+                first = max(first, max(max(o0, o1), max(o2, o3)))
+                last = min(last, min(min(o0, o1), min(o2, o3)) + width)
+            if first < last:
+                row[first:last] = 0.0
+            for a in range(0, count[i], 4):
+                p0, p1, p2, p3 = place[i, a], place[i, a + 1], place[i, a + 2], place[i, a + 3]
+                w0, w1, w2, w3 = weight[i, a], weight[i, a + 1], weight[i, a + 2], weight[i, a + 3]
+                if first < last:
+                    z0 = Z[p0, first - offset[p0] : last - offset[p0]]
+                    z1 = Z[p1, first - offset[p1] : last - offset[p1]]
+                    z2 = Z[p2, first - offset[p2] : last - offset[p2]]
+                    z3 = Z[p3, first - offset[p3] : last - offset[p3]]
+                    into = row[first:last]
+                    for c in range(last - first):
+                        into[c] += (w0 * z0[c] + w1 * z1[c]) + (w2 * z2[c] + w3 * z3[c])
+            for j in range(i, n_wheel):
+                total = 0.0
+                if lowest[j] < last and highest[j] > first:
+                    for b in range(count[j]):
+                        if first <= place[j, b] < last:
+                            total += weight[j, b] * row[place[j, b]]
+                result[k, i, j] = result[k, j, i] = total

@@ -1,0 +1,18 @@
+"""Rules of codes: what a run is measured against, and verdicts with clause, value, limit and source."""
+
+from axlespan.standards.assess import assess
+from axlespan.standards.assessment import CHECKS, Assessment
+from axlespan.standards.bridge_facts import BridgeFacts, bridge_facts
+from axlespan.standards.verdict import FROM_MEMORY, Verdict, overall, worst
+
+__all__ = [
+    "CHECKS",
+    "FROM_MEMORY",
+    "Assessment",
+    "BridgeFacts",
+    "Verdict",
+    "assess",
+    "bridge_facts",
+    "overall",
+    "worst",
+]

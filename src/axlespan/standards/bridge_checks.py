@@ -1,0 +1,250 @@
+"""Checks of the bridge as such: need of a dynamic analysis, damping, load model 71, dynamic effects of the train."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from axlespan.errors import InputError
+from axlespan.linalg.factor import NotPositiveDefinite
+from axlespan.standards import dynamic_factors, lm71
+from axlespan.standards.bridge_values import (
+    ADDED_SOURCE,
+    DAMPING_SOURCE,
+    added_damping,
+    frequency_limits,
+    structural_damping,
+)
+from axlespan.standards.deck_checks import live_deflection
+from axlespan.standards.dynamic_analysis import FLOW_CHART, load_model, need_of_dynamic_analysis
+from axlespan.standards.given import Given
+from axlespan.standards.influence import deflection_lines
+from axlespan.standards.limits import limit_of
+from axlespan.standards.verdict import REPORTED, Verdict, judged, not_assessed
+
+FloatArray = npt.NDArray[np.float64]
+
+# Damping ratios are compared to so many digits: they come from eigenvectors.
+_DIGITS = 9
+
+
+@dataclass(frozen=True, eq=False)
+class SpanEffects:
+    """Static deflections at the middle of a span, positive downward."""
+
+    middle: float  # [m]
+    span: float  # [m]
+    lm71: float  # LM71, for continuous beams SW/0 too, with α and without dynamic factor [m]
+    train: float  # of the run's train [m]
+
+
+def span_effects(given: Given) -> list[SpanEffects]:
+    """Static deflections of each span under load model 71 and under the train of the run.
+
+    Raises
+    ------
+    InputError, NotPositiveDefinite
+        If the structure cannot be solved.
+    """
+    if given.crossing is None or len(given.crossing.runs) > 1 or not given.facts.spans:
+        return []
+    starts, spans = np.array(given.facts.starts), np.array(given.facts.spans)
+    lines = deflection_lines(given.crossing.structure, starts + 0.5 * spans)
+    behind = [
+        item.behind + point.behind for item in given.crossing.placements for point in item.vehicle.contacts
+    ]
+    if given.crossing.runs[0].course.direction < 0:
+        behind = [max(behind) - distance for distance in behind]
+    alpha, found = given.assessment.alpha, []
+    for line, start, span in zip(lines, starts, spans, strict=True):
+        model = lm71.lm71_effect(line, sign=-1.0, alpha=alpha)
+        if given.facts.continuous:
+            model = max(model, lm71.sw0_effect(line, sign=-1.0, alpha=alpha))
+        train = lm71.train_effect(line, given.static_forces, np.array(behind), sign=-1.0)
+        found.append(SpanEffects(float(start + 0.5 * span), float(span), model, train))
+    return found
+
+
+def dynamic_analysis(given: Given) -> list[Verdict]:
+    """The flow chart: reported, not judged; with the load model to use."""
+    check, clause = "dynamic_analysis", "EN 1991-2 figure 6.9"
+    quantity = "need of a dynamic analysis"
+    facts, speed = given.facts, given.assessment.line_speed
+    if speed is None:
+        return [
+            not_assessed(
+                check, clause, quantity, "the line speed is not known: give line_speed", source=FLOW_CHART
+            )
+        ]
+    n0 = facts.first_frequency
+    if not facts.spans or n0 is None:
+        reason = facts.missing or "the first frequency is not known: give first_frequency"
+        return [not_assessed(check, clause, quantity, reason, source=FLOW_CHART)]
+    span = max(facts.spans)
+    need = need_of_dynamic_analysis(
+        line_speed=speed,
+        span=span,
+        continuous=facts.continuous,
+        simple=facts.simple,
+        first_frequency=n0,
+        torsional_frequency=given.assessment.torsional_frequency,
+    )
+    path = "; ".join(need.path)
+    if need.required is None:
+        return [not_assessed(check, clause, quantity, path, source=FLOW_CHART)]
+    limits = frequency_limits(span)
+    words = f"{need.words}: {path}"
+    if limits is not None and "n0" not in path:
+        words += f"; limits of n0 are {limits[0]:.3g} to {limits[1]:.3g} Hz"
+    if need.required:
+        words += f"; load model {load_model(facts.spans, simple=facts.simple and not facts.continuous)}"
+    verdict = Verdict(
+        check, clause, f"{quantity}; n0", REPORTED, n0, None, "Hz", source=FLOW_CHART, note=words
+    )
+    return [verdict]
+
+
+def damping(given: Given) -> list[Verdict]:
+    """The model's damping of its first vertical mode against the lower bound by type and span."""
+    check, clause = "damping", "EN 1991-2 table 6.6"
+    quantity = "damping ratio of the first vertical mode"
+    kind, facts = given.assessment.bridge_type, given.facts
+    if kind is None:
+        reason = "the type of the bridge is not known: give bridge_type"
+        return [not_assessed(check, clause, quantity, reason, source=DAMPING_SOURCE)]
+    if not facts.spans or facts.damping_ratio is None:
+        reason = facts.missing or "the model's damping is not known"
+        return [not_assessed(check, clause, quantity, reason, source=DAMPING_SOURCE)]
+    span = min(facts.spans)
+    bound, source, note = structural_damping(kind, span), DAMPING_SOURCE, f"{kind}, span {span:.4g} m"
+    added = added_damping(span)
+    if bool(np.all(given.moving_forces)) and added > 0.0:
+        bound, source = bound + added, f"{source}; {ADDED_SOURCE}"
+        note += f"; {100.0 * added:.2g} % added for moving forces"
+    excess = limit_of("damping_excess", given.assessment).value or 1.0
+    verdict = judged(
+        check,
+        clause,
+        quantity,
+        round(facts.damping_ratio, _DIGITS),
+        round(bound * excess, _DIGITS),
+        "",
+        source=source,
+        note=f"no more than the lower bound may be taken; {note}",
+    )
+    return [verdict]
+
+
+def lm71_deflection(given: Given, effects: Sequence[SpanEffects]) -> list[Verdict]:
+    """Deflection under load model 71 with its dynamic factor, against L/600."""
+    check, clause = "lm71_deflection", "EN 1990 A2.4.4.2.3"
+    quantity = "vertical deflection under Φ × LM71"
+    reason = _not_possible(given, effects)
+    if reason:
+        return [not_assessed(check, clause, quantity, reason, source=lm71.SOURCE)]
+    limit = limit_of("deflection_ratio", given.assessment)
+    assert limit.value is not None
+    factor, name = _static_factor(given)
+    worst = max(effects, key=lambda effect: effect.lm71 / effect.span)
+    value = factor * worst.lm71
+    ratio = worst.span / value if value > 0.0 else float("inf")
+    return [
+        judged(
+            check,
+            clause,
+            quantity,
+            value,
+            worst.span / limit.value,
+            "m",
+            where=f"{worst.middle:.4g} m",
+            source=f"{limit.source}; {lm71.SOURCE}",
+            note=f"L/{ratio:.0f}, limit L/{limit.value:.0f}; {name} = {factor:.3f}, α = {given.assessment.alpha:g}",
+        )
+    ]
+
+
+def dynamic_effect(given: Given, effects: Sequence[SpanEffects]) -> list[Verdict]:
+    """(1 + φ'_dyn + φ''/2) times the static effect of the run's train over Φ × LM71, by midspan deflections."""
+    check, clause = "dynamic_effect", "EN 1991-2 6.4.6.5"
+    quantity = "(1 + φ'_dyn + φ''/2) × train over Φ × LM71, midspan deflections"
+    reason = _not_possible(given, effects)
+    if not reason and not given.result.line_displacement.size:
+        reason = "the deck was not recorded: write line: 41 under output"
+    if not reason and not all(effect.train > 0.0 and effect.lm71 > 0.0 for effect in effects):
+        reason = "a span does not deflect under the train or under load model 71"
+    if reason:
+        return [not_assessed(check, clause, quantity, reason, source=lm71.SOURCE)]
+    moved, at = live_deflection(given), given.result.line_position
+    factor, name = _static_factor(given)
+    n0, length = given.facts.first_frequency, given.facts.determinant_length
+    assert n0 is not None and length is not None
+    share = 0.5 if given.assessment.maintenance == "careful" else 1.0
+    second = share * dynamic_factors.phi_double_dash(given.speed, length, n0)
+    best: tuple[float, SpanEffects, float, int] | None = None
+    for effect in effects:
+        history = -_at(moved, at, effect.middle)
+        row = int(np.argmax(history))
+        first = float(history[row]) / effect.train - 1.0
+        ratio = (1.0 + first + second) * effect.train / (factor * effect.lm71)
+        if best is None or ratio > best[0]:
+            best = (ratio, effect, first, row)
+    assert best is not None
+    ratio, effect, first, row = best
+    limit = limit_of(check, given.assessment)
+    theory = dynamic_factors.phi_dash(given.speed, length, n0)
+    share_words = "φ''/2" if share == 0.5 else "φ''"
+    return [
+        judged(
+            check,
+            clause,
+            quantity if share == 0.5 else quantity.replace("φ''/2", "φ''"),
+            ratio,
+            limit.value,
+            "",
+            where=f"{effect.middle:.4g} m",
+            when=float(given.result.time[row]),
+            source=f"{limit.source}; {dynamic_factors.SOURCE}",
+            note=f"φ'_dyn = {first:.3f} (φ' of annex C {theory:.3f}), {share_words} = {second:.3f}, "
+            f"{name} = {factor:.3f}" + ("; the train governs, not LM71" if ratio > 1.0 else ""),
+        )
+    ]
+
+
+def effects_of(given: Given) -> list[SpanEffects]:
+    """Static effects; none where the structure cannot be solved."""
+    try:
+        return span_effects(given)
+    except (InputError, NotPositiveDefinite):
+        return []
+
+
+def _static_factor(given: Given) -> tuple[float, str]:
+    length = given.facts.determinant_length
+    assert length is not None
+    if given.assessment.maintenance == "careful":
+        return dynamic_factors.phi2(length), "Φ2"
+    return dynamic_factors.phi3(length), "Φ3"
+
+
+def _not_possible(given: Given, effects: Sequence[SpanEffects]) -> str:
+    if given.crossing is None:
+        return "the structure is not known, only its result"
+    if len(given.crossing.runs) > 1:
+        return "several trains are under way: the static effect depends on where they meet"
+    if not given.facts.spans:
+        return given.facts.missing
+    if given.facts.first_frequency is None or given.facts.determinant_length is None:
+        return "the first frequency is not known: give first_frequency"
+    if not np.all(np.isfinite(given.static_forces)):
+        return "the static wheel forces are not known"
+    return "" if effects else "the static deflections are not known"
+
+
+def _at(table: FloatArray, positions: FloatArray, place: float) -> FloatArray:
+    """A history at a place between recorded points, by linear interpolation."""
+    i = int(np.clip(np.searchsorted(positions, place) - 1, 0, len(positions) - 2))
+    share = float(np.clip((place - positions[i]) / (positions[i + 1] - positions[i]), 0.0, 1.0))
+    return np.asarray((1.0 - share) * table[:, i] + share * table[:, i + 1])

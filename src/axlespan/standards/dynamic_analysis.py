@@ -1,0 +1,167 @@
+"""Is a dynamic analysis needed, with which trains and at which speeds (EN 1991-2 6.4.4 and 6.4.6)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from axlespan.errors import InputError
+from axlespan.standards.bridge_values import frequency_limits
+from axlespan.standards.verdict import FROM_MEMORY
+
+FloatArray = npt.NDArray[np.float64]
+
+FLOW_CHART = f"EN 1991-2:2003 figure 6.9; {FROM_MEMORY}"
+SPEEDS = f"EN 1991-2:2003 6.4.6.2; {FROM_MEMORY}"
+TRAINS = f"EN 1991-2:2003 table 6.4; {FROM_MEMORY}"
+
+#: Lowest speed that is analyzed [m/s], and the highest over the line speed [-].
+LOWEST_SPEED, OVERSPEED = 40.0, 1.2
+
+
+@dataclass(frozen=True)
+class Need:
+    """Whether a dynamic analysis is needed; None where the chart asks for what is not known."""
+
+    required: bool | None
+    path: tuple[str, ...]  # the questions and answers that lead there
+
+    @property
+    def words(self) -> str:
+        """The answer in words."""
+        known = {True: "required", False: "not required", None: "not decided"}
+        return known[self.required]
+
+
+def need_of_dynamic_analysis(
+    *,
+    line_speed: float,
+    span: float,
+    continuous: bool,
+    simple: bool,
+    first_frequency: float,
+    torsional_frequency: float | None = None,
+) -> Need:
+    """Follow the flow chart of EN 1991-2 figure 6.9.
+
+    Parameters
+    ----------
+    line_speed : float
+        Maximum line speed at the site [m/s].
+    span : float
+        L [m].
+    continuous : bool
+        Whether it is a continuous bridge.
+    simple : bool
+        Whether it behaves like a simple beam or plate: line supports, little skew, one bending mode rules.
+    first_frequency, torsional_frequency : float
+        n0 and n_T [Hz]; n_T None where it is not known.
+    """
+    path: list[str] = []
+    if line_speed <= 200.0 / 3.6 * (1.0 + 1e-12):
+        path.append("line speed up to 200 km/h")
+        if continuous:
+            return Need(False, (*path, "continuous bridge"))
+        path.append("not continuous")
+        return _by_frequency(path, span, first_frequency) or Need(None, (*path, _no_limits(span)))
+    path.append("line speed above 200 km/h")
+    if not simple:
+        return Need(True, (*path, "no simple structure"))
+    path.append("simple structure")
+    if span >= 40.0:
+        path.append("span from 40 m on")
+        found = _by_frequency(path, span, first_frequency)
+        if found is not None and found.required is False:
+            return found
+        path.append("n0 outside its limits" if found is not None else _no_limits(span))
+    else:
+        path.append("span below 40 m")
+    if torsional_frequency is None:
+        return Need(None, (*path, "torsional frequency not known"))
+    if torsional_frequency <= 1.2 * first_frequency:
+        return Need(True, (*path, "n_T is not above 1.2 n0"))
+    return Need(None, (*path, "n_T above 1.2 n0", "tables F.1 and F.2 of v/n0 are not available here"))
+
+
+def _by_frequency(path: Sequence[str], span: float, first_frequency: float) -> Need | None:
+    limits = frequency_limits(span)
+    if limits is None:
+        return None
+    inside = limits[0] <= first_frequency <= limits[1]
+    text = f"n0 = {first_frequency:.3g} Hz {'within' if inside else 'outside'} {limits[0]:.3g} to {limits[1]:.3g} Hz"
+    return Need(not inside, (*path, text))
+
+
+def _no_limits(span: float) -> str:
+    return f"no limits of n0 for a span of {span:g} m"
+
+
+def load_model(spans: Sequence[float], *, simple: bool) -> str:
+    """The high-speed load model to use: HSLM-A, or HSLM-B for simple spans below 7 m.
+
+    Examples
+    --------
+    >>> load_model([6.0], simple=True), load_model([6.0, 6.0], simple=False)
+    ('HSLM-B', 'HSLM-A')
+    """
+    return "HSLM-B" if simple and max(spans) < 7.0 else "HSLM-A"
+
+
+def resonance_speeds(
+    frequencies: Sequence[float],
+    distance: float,
+    *,
+    orders: int = 4,
+    lowest: float = 0.0,
+    highest: float = float("inf"),
+) -> list[tuple[float, int, int]]:
+    """Critical speeds v = f_j d / i within bounds, as (speed [m/s], mode j, order i), ascending.
+
+    Parameters
+    ----------
+    frequencies : sequence of float
+        f_j [Hz].
+    distance : float
+        d [m], regular distance of axle groups: the length of a coach.
+
+    Examples
+    --------
+    >>> resonance_speeds([4.0], 18.0, orders=2)
+    [(36.0, 1, 2), (72.0, 1, 1)]
+    """
+    if not distance > 0.0:
+        raise InputError("must be positive", field="distance", value=distance)
+    found = [
+        (frequency * distance / order, mode, order)
+        for mode, frequency in enumerate(frequencies, 1)
+        for order in range(1, orders + 1)
+    ]
+    return sorted(item for item in found if lowest <= item[0] <= highest)
+
+
+def speeds_to_analyze(
+    line_speed: float, *, step: float = 10.0 / 3.6, critical: Sequence[float] = ()
+) -> FloatArray:
+    """Speeds [m/s] from 40 m/s to 1.2 times the line speed, closer by a quarter of a step around critical ones.
+
+    Parameters
+    ----------
+    line_speed : float
+        [m/s].
+    step : float
+        [m/s].
+    critical : sequence of float
+        Such as those of :func:`resonance_speeds` [m/s]; each is among the speeds, with two to each side.
+    """
+    if not line_speed > 0.0 or not step > 0.0:
+        raise InputError("must be positive", field="line_speed", value=line_speed)
+    highest = OVERSPEED * line_speed
+    lowest = min(LOWEST_SPEED, highest)
+    count = max(1, int(np.ceil((highest - lowest) / step - 1e-9)))
+    speeds = [np.linspace(lowest, highest, count + 1)]
+    speeds += [np.asarray(speed) + 0.25 * step * np.arange(-2, 3) for speed in critical]
+    every = np.unique(np.concatenate(speeds).round(9))
+    return np.asarray(every[(every >= lowest) & (every <= highest * (1.0 + 1e-12))])

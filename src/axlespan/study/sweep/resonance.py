@@ -1,0 +1,104 @@
+"""Speeds at which equal distances of a train meet a natural frequency of the structure: v = f d / i."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from axlespan.linalg.eigen import lowest_modes
+from axlespan.vehicles import Train
+
+if TYPE_CHECKING:
+    from axlespan.study.sweep.study import Study
+
+FloatArray = npt.NDArray[np.float64]
+
+# Frequencies of a structure and orders i that are looked at.
+_FREQUENCIES: Final = 3
+_ORDERS: Final = 5
+# Distances that repeat in trains lie here [m]: coaches have 10 to 30 m.
+_SPACINGS: Final = (5.0, 35.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Resonances:
+    """Resonance speeds of a train on a structure."""
+
+    frequencies: FloatArray  # (n_frequency,) [Hz]
+    spacing: float  # distance d that repeats in the train [m]
+
+    def speeds(self, order: int) -> FloatArray:
+        """v = f d / i for each frequency (n_frequency,) [m/s]."""
+        return self.frequencies * self.spacing / order
+
+    def between(self, low: float, high: float) -> list[tuple[int, int, float]]:
+        """Frequency number, order and speed of all within bounds [m/s]."""
+        return [
+            (j, order, float(speed))
+            for order in range(1, _ORDERS + 1)
+            for j, speed in enumerate(self.speeds(order), 1)
+            if low <= speed <= high
+        ]
+
+    def summary(self) -> dict[str, Any]:
+        """For summary.json."""
+        speeds = {f"{order}": self.speeds(order).tolist() for order in range(1, _ORDERS + 1)}
+        return {
+            "frequencies_hz": self.frequencies.tolist(),
+            "spacing_m": self.spacing,
+            "speeds_m_per_s_by_order": speeds,
+        }
+
+
+def spacing_of(train: Train, gravity: float = 9.81) -> float | None:
+    """The distance [m] that repeats most strongly in a train; None for one without.
+
+    It is the wavelength of the largest |Σ P exp(2πi x/λ)| of its axle loads P at x, between 5 and 35 m. Of
+    wavelengths that are equally strong within 2 %, as λ and λ/2 of a train of equal axles, the longest counts.
+    """
+    offsets, loads = train.offsets, train.static_forces(gravity)
+    if len(offsets) < 3 or loads.sum() <= 0.0 or offsets.max() < 2.0 * _SPACINGS[0]:
+        return None
+    high = min(_SPACINGS[1], float(offsets.max()))
+    wavelengths = np.linspace(_SPACINGS[0], high, 6001)
+    signature = np.zeros(len(wavelengths))
+    for begin in range(0, len(wavelengths), 512):
+        some = wavelengths[begin : begin + 512]
+        signature[begin : begin + 512] = np.abs(np.exp(2j * np.pi * offsets / some[:, None]) @ loads)
+    top = signature.max()
+    inner = np.flatnonzero((signature[1:-1] >= signature[:-2]) & (signature[1:-1] >= signature[2:])) + 1
+    strong = inner[signature[inner] >= 0.98 * top] if len(inner) else inner
+    if not len(strong) or top < 0.2 * loads.sum():
+        return None
+    return float(wavelengths[strong[-1]])
+
+
+def resonances_of(study: Study, trains: Sequence[str], most: int) -> Mapping[str, Resonances]:
+    """Resonances of named trains, where the study has one structure; of several, on that of the first scenario.
+
+    Nothing is looked for in studies of more than ``most`` structures or in random mixes of trains.
+    """
+    scenarios = study._scenarios
+    ids = np.arange(min(len(scenarios), 100_000), dtype=np.int64)
+    if len(np.unique(scenarios.groups(ids, ("structure",)))) > most or len(trains) > 100:
+        return {}
+    _, first = np.unique(scenarios.groups(ids, ("train",)), return_index=True)
+    found: dict[str, Resonances] = {}
+    frequencies: FloatArray | None = None
+    for number in first.tolist()[:100]:
+        scenario = study.scenario(int(ids[number]))
+        built = scenario.built
+        if frequencies is None:
+            matrices = built.plan.structure
+            massive = int(np.count_nonzero(matrices.M.diagonal()))
+            frequencies = lowest_modes(matrices.K, matrices.M, min(_FREQUENCIES, massive)).frequencies
+        label = scenario.values.get("train")
+        name = label if isinstance(label, str) else built.crossing.train_names
+        spacing = spacing_of(built.crossing.train, built.crossing.gravity)
+        if name in trains and spacing is not None:
+            found[name] = Resonances(frequencies, spacing)
+    return found
