@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 if TYPE_CHECKING:
-    from axlespan import bridges, irregularity, plot, vehicles
+    from axlespan import bridges, irregularity, plot, standards, vehicles
     from axlespan.dynamics.alpha import Alpha
     from axlespan.errors import AnalysisError, AxlespanError, InputError
-    from axlespan.interaction.crossing import Crossing
+    from axlespan.interaction.crossing import Crossing, OtherTrain
     from axlespan.interaction.result import Result
     from axlespan.interaction.settings import Iteration
     from axlespan.interaction.simulate import simulate, simulate_many
@@ -37,6 +37,7 @@ _HOMES = {
     "Material": "model.materials",
     "Modal": "model.damping",
     "Model": "model.model",
+    "OtherTrain": "interaction.crossing",
     "Rayleigh": "model.damping",
     "Result": "interaction.result",
     "Structure": "running.structure",
@@ -48,7 +49,7 @@ _HOMES = {
     "simulate_many": "interaction.simulate",
     "write_result": "io.results",
 }
-_ROOMS = ("bridges", "irregularity", "plot", "vehicles")
+_ROOMS = ("bridges", "irregularity", "plot", "standards", "vehicles")
 
 __all__ = [
     "Alpha",
@@ -61,6 +62,7 @@ __all__ = [
     "Material",
     "Modal",
     "Model",
+    "OtherTrain",
     "Rayleigh",
     "Result",
     "Structure",
@@ -73,6 +75,7 @@ __all__ = [
     "read_result",
     "simulate",
     "simulate_many",
+    "standards",
     "vehicles",
     "write_result",
 ]

@@ -8,7 +8,7 @@ from axlespan.contact.motion import SpeedHistory
 from axlespan.elements.beam import BeamProperties
 from axlespan.errors import InputError
 from axlespan.interaction.crossing import Crossing, OtherTrain
-from axlespan.interaction.simulate import simulate
+from axlespan.interaction.simulate import simulate, simulate_many
 from axlespan.irregularity import Harmonic, Scaled, Table
 from axlespan.model.compile import compile_model
 from axlespan.model.model import Model
@@ -54,7 +54,9 @@ TWIN = twin()
 
 
 def run(crossing, steps=1200, time_step=1e-3, **settings):
-    return simulate(crossing, time_step=time_step, steps=steps, sensors={"quarter": 7.0, "mid": 12.5}, **settings)
+    return simulate(
+        crossing, time_step=time_step, steps=steps, sensors={"quarter": 7.0, "mid": 12.5}, **settings
+    )
 
 
 # --- one train or two --------------------------------------------------------------------------------
@@ -92,6 +94,50 @@ def test_forces_superpose():
         both.support_reaction, sum(part.support_reaction for part in parts), rtol=0, atol=1e-10 * 190e3
     )
     assert "meet on the line 'main'" in "".join(both.facts["notes"])
+
+
+def mixed_crossing(coupling_structure=BRIDGE):
+    """A wavy line, a car that brakes, and sprung masses that come the other way."""
+    return Crossing(
+        coupling_structure,
+        Train.joined([Train.of(CAR), Train.of(axle_loads(loads=5e4))], [3.0]),
+        speed=30.0,
+        acceleration=-6.0,
+        irregularity=WAVE,
+        others=[
+            OtherTrain(
+                train=Train.of(MASS, 3, 4.0),
+                speed_history=[[0.0, 15.0], [0.5, 25.0]],
+                direction="backward",
+                start=22.0,
+                irregularity=Scaled(WAVE, 2.0),
+            )
+        ],
+    )
+
+
+@pytest.mark.parametrize(
+    ("coupling", "tolerance"), [("literal", 1e-9), ("refactored", 1e-9), ("iterative", 1e-6)]
+)
+def test_all_couplings_agree(coupling, tolerance):
+    """The literal (A.5) knows nothing of stretches and path columns."""
+    crossing = mixed_crossing()
+    direct = run(crossing, steps=700, method=asp.Alpha(0.0))
+    other = run(crossing, steps=700, method=asp.Alpha(0.0), coupling=coupling)
+    assert direct.contact == ("1.1", "1.2", "2.1", "3.1", "4.1", "5.1")
+    scale = np.abs(direct.contact_force).max()
+    np.testing.assert_allclose(other.contact_force, direct.contact_force, rtol=0, atol=tolerance * scale)
+
+
+def test_side_by_side_with_other_crossings():
+    single = Crossing(BRIDGE, Train.of(MASS), speed=40.0)
+    crossings = [single, mixed_crossing(), Crossing(BRIDGE, FORCES, speed=20.0, direction="backward")]
+    together = simulate_many(crossings, time_step=1e-3, steps=500, sensors={"quarter": 7.0, "mid": 12.5})
+    for crossing, result in zip(crossings, together, strict=True):
+        alone = run(crossing, steps=500)
+        assert result.contact == alone.contact
+        np.testing.assert_allclose(result.contact_force, alone.contact_force, rtol=1e-9)
+        np.testing.assert_allclose(result.sensor_displacement, alone.sensor_displacement, rtol=0, atol=1e-13)
 
 
 # --- backward ----------------------------------------------------------------------------------------
@@ -169,7 +215,9 @@ def modal_midspan(places, speeds_end, loads, modes, time_step, steps):
     return w
 
 
-@pytest.mark.parametrize(("speed", "acceleration", "stop"), [(10.0, 8.0, None), (30.0, -9.0, None), (15.0, 10.0, 20.0)])
+@pytest.mark.parametrize(
+    ("speed", "acceleration", "stop"), [(10.0, 8.0, None), (30.0, -9.0, None), (15.0, 10.0, 20.0)]
+)
 def test_forces_that_change_their_speed(speed, acceleration, stop):
     history = SpeedHistory.accelerating(speed, acceleration, stop)
     steps, dt = 6000, 2.5e-4
@@ -207,7 +255,9 @@ def free_amplitude(train, speed):
     """Amplitude of the first mode after all forces have left, at mid-span."""
     duration = (L + train.wheelbase) / speed
     steps = int(np.ceil((duration + 1.0 / F1) / 1e-3))
-    result = simulate(Crossing(BRIDGE, train, speed=speed), time_step=1e-3, steps=steps, sensors={"mid": 12.5})
+    result = simulate(
+        Crossing(BRIDGE, train, speed=speed), time_step=1e-3, steps=steps, sensors={"mid": 12.5}
+    )
     after = result.time >= duration
     return np.abs(result.sensor_displacement[after, 0]).max()
 
@@ -246,7 +296,9 @@ def test_each_line_has_its_irregularity():
         others=[OtherTrain(train=Train.of(rigid_mass(mass=1e3)), speed=20.0, line="south")],
     )
     result = run(crossing, steps=200)
-    crossing_even = Crossing(TWIN, Train.of(rigid_mass(mass=1e3)), speed=20.0, line="south", irregularity={"north": WAVE})
+    crossing_even = Crossing(
+        TWIN, Train.of(rigid_mass(mass=1e3)), speed=20.0, line="south", irregularity={"north": WAVE}
+    )
     assert crossing_even.runs[0].profiles[0].value(1.0) == 0.0
     profiles = [run.profiles[0] for run in crossing.runs]
     assert profiles[1].value(1.0) == pytest.approx(-2.0 * profiles[0].value(1.0))
@@ -289,7 +341,10 @@ def test_trains_that_run_into_each_other(other, message):
     [
         ({**FAST, "line": "nroth"}, "Did you mean 'north'"),
         ({**FAST, "direction": "backwards"}, "Did you mean 'backward'"),
-        ({**FAST, "line": "south", "start": 200.0}, r"others\.0 = 'the first wheel runs from 200 .*never brings a wheel"),
+        (
+            {**FAST, "line": "south", "start": 200.0},
+            r"others\.0 = 'the first wheel runs from 200 .*never brings a wheel",
+        ),
         ({**FAST, "to_speed": 50.0}, r"to_speed = 50\.0: needs an acceleration"),
         ({"train": Train.of(MASS), "speed_history": [[0, 20.0]], "acceleration": 1.0}, "goes with speed"),
         ({**FAST, "delay": -1.0}, r"delay = -1\.0: must be zero or positive"),

@@ -201,6 +201,16 @@ def test_moving_forces_have_no_unloading_and_no_coaches():
     assert found["dynamic_effect"].outcome == "pass"
 
 
+def test_wheels_that_leave_the_rail(result, crossing):
+    for more, count in (({"tension_episodes": 2}, 2.0), ({"flight_count": 3}, 3.0)):
+        flying = dataclasses.replace(result, checks={**result.checks, **more})
+        (verdict,) = assess(flying, crossing, dataclasses.replace(LINE, checks=("loss_of_contact",)))
+        assert (verdict.outcome, verdict.value) == ("fail", count)
+    unwatched = dataclasses.replace(result, checks={})
+    (verdict,) = assess(unwatched, crossing, dataclasses.replace(LINE, checks=("loss_of_contact",)))
+    assert verdict.reason == "tension was not watched in this run"
+
+
 def test_without_the_crossing_only_the_result_speaks(result):
     found = {verdict.check: verdict for verdict in assess(result, None, LINE)}
     assert "the structure is not known" in found["deflection"].reason

@@ -44,6 +44,10 @@ RIGHT = [
         ),
     ),
     (("80 km/h", "80 km/h\n  irregularity: none"),),
+    (("80 km/h", "80 km/h\n  acceleration: -0.5 m/s^2\n  to_speed: 10\n  direction: backward\n  delay: 1 s"),),
+    (("80 km/h", "80 km/h\n  irregularity: {kind: lines, lines: {main: none, left: {kind: table, points: [[0, 0], [1, 0]]}}}"),),
+    (("analysis:", "other_trains:\n  - {train: [{vehicle: hslm-b, forces: 12, distance: 3 m}], speed: 30}\nanalysis:"),),
+    (("steps: 2000", "steps: 2000\n  vehicles: axle-loads"),),
     (
         (
             "<train>",

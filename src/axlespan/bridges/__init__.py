@@ -1,6 +1,7 @@
 """Bridges and track: builders of structures from a few numbers."""
 
 from axlespan.bridges.frames import Column, frame
+from axlespan.bridges.grid import GridBeam, beam_grid
 from axlespan.bridges.multi_span import simple_spans
 from axlespan.bridges.rails import RAILS, Rail
 from axlespan.bridges.spans import SupportAt, continuous_beam, simple_span
@@ -14,6 +15,7 @@ __all__ = [
     "PRESETS",
     "RAILS",
     "Column",
+    "GridBeam",
     "Layer",
     "Rail",
     "Station",
@@ -22,6 +24,7 @@ __all__ = [
     "TrackPreset",
     "Zone",
     "ballasted_track",
+    "beam_grid",
     "continuous_beam",
     "frame",
     "least_approach",

@@ -56,7 +56,7 @@ class Variation:
             values = [getattr(station, name) for station in stations]
             given = [value for value in values if value is not None]
             if given and len(given) < len(values):
-                raise InputError("must be given at all stations or at none", field=f"stations.{name}")
+                raise InputError("must be given at all stations or at none", field="stations", value=name)
             for number, value in enumerate(given):
                 require_positive(value, f"stations.{number}.{name}", zero=name == "mass_per_length")
             columns.append(np.array(given) if given else None)

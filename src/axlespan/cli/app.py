@@ -63,9 +63,7 @@ def run(
 
 @app.command()
 def report(
-    folder: Annotated[
-        Path, typer.Argument(help="Folder of results, or a result.nc.", metavar="FOLDER")
-    ],
+    folder: Annotated[Path, typer.Argument(help="Folder of results, or a result.nc.", metavar="FOLDER")],
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", help="The page; report.html in the folder by default."),
@@ -162,7 +160,9 @@ def examples(
 def library(
     name: Annotated[
         str | None,
-        typer.Argument(help="Name of an entry, or a vehicle's file of your own; none lists all.", metavar="NAME"),
+        typer.Argument(
+            help="Name of an entry, or a vehicle's file of your own; none lists all.", metavar="NAME"
+        ),
     ] = None,
     copy: Annotated[
         Path | None, typer.Option("--copy", help="Write the vehicle's YAML to this file, to change it.")
@@ -200,6 +200,46 @@ def verify(
     from axlespan.cli.verify import run_book
 
     raise typer.Exit(run_book(full=full, only=only))
+
+
+@app.command()
+def init(
+    file: Annotated[Path, typer.Argument(help="File to write.")] = Path("case.yaml"),
+    spans: Annotated[str | None, typer.Option(help="Span, or spans: '40 m' or '18 m, 24 m, 18 m'.")] = None,
+    bridge_type: Annotated[str | None, typer.Option(help="prestressed-concrete, steel, ...")] = None,
+    mass_per_length: Annotated[str | None, typer.Option(help="With all that stays on it: '15 t/m'.")] = None,
+    frequency: Annotated[
+        str | None, typer.Option(help="First frequency of the longest span: '4 Hz'.")
+    ] = None,
+    second_moment: Annotated[str | None, typer.Option(help="In place of the frequency: '2.9 m^4'.")] = None,
+    damping: Annotated[str | None, typer.Option(help="Damping ratio: '1 %'.")] = None,
+    track: Annotated[str | None, typer.Option(help="none, ballasted or slab.")] = None,
+    train: Annotated[str | None, typer.Option(help="A name in axlespan library.")] = None,
+    speed: Annotated[str | None, typer.Option(help="'250 km/h'.")] = None,
+    irregularity: Annotated[str | None, typer.Option(help="none, or a spectrum: german-low.")] = None,
+    line_speed: Annotated[str | None, typer.Option(help="For verdicts of the code; none: without.")] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
+) -> None:
+    """Write a case file of your own, with comments.
+
+    Asks for what is not given as an option; without a terminal it takes what is usual.
+    """
+    from axlespan.cli.init import Options, write_case
+
+    options = Options(
+        spans,
+        bridge_type,
+        mass_per_length,
+        frequency,
+        second_moment,
+        damping,
+        track,
+        train,
+        speed,
+        irregularity,
+        line_speed,
+    )
+    raise typer.Exit(write_case(file, options, force=force))
 
 
 @app.command()

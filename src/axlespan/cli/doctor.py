@@ -141,7 +141,7 @@ def _times(matrix: object, kind: str) -> tuple[float, float]:
     begun = time.perf_counter()
     factor = factorize(matrix, kind=kind)  # type: ignore[arg-type]
     factored = time.perf_counter() - begun
-    load = np.ones(matrix.shape[0])  # type: ignore[attr-defined]
+    load = np.ones(matrix.shape[0])
     return factored, min(_timed(lambda: factor.solve(load)) for _ in range(5))
 
 

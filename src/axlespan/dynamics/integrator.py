@@ -298,16 +298,25 @@ class Stepper:
         self.acceleration[...] = self.state.a
         self._done = True
 
-    def finish(self) -> None:
-        """Complete the state at the new time."""
+    def finish(self, added: FloatArray | None = None) -> None:
+        """Complete the state at the new time; ``added`` is acceleration that contact forces bring."""
         self._done = True
         values, integrator = self.state.values.reshape(3, -1), self.integrator
         acceleration = self.acceleration.reshape(-1)
         if self._complete is not None:
+            more = acceleration if added is None else added.reshape(-1)
             self._complete(
-                integrator.prediction, integrator.u_from_a, integrator.v_from_a, acceleration, values
+                integrator.prediction,
+                integrator.u_from_a,
+                integrator.v_from_a,
+                acceleration,
+                more,
+                added is not None,
+                values,
             )
             return
+        if added is not None:
+            acceleration += added.reshape(-1)
         np.matmul(self._advance[:, :3], values, out=self._ahead)
         np.multiply(self._advance[:, 3:], acceleration, out=values[:2])
         values[:2] += self._ahead

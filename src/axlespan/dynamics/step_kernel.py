@@ -68,11 +68,16 @@ def right_side(single: bool) -> Loop:
     return predict
 
 
-def complete(prediction: Any, u_from_a: float, v_from_a: float, acceleration: Any, values: Any) -> None:
-    """Advance ``values`` (3, m) to accelerations (m,) at the new time."""
+def complete(
+    prediction: Any, u_from_a: float, v_from_a: float, acceleration: Any, added: Any, adds: bool, values: Any
+) -> None:
+    """Advance ``values`` (3, m) to accelerations (m,) at the new time, ``added`` included if ``adds``."""
     u, v, a = values[0], values[1], values[2]
     dt, late_u, late_v = prediction[0, 1], prediction[0, 2], prediction[1, 2]
     for i in range(acceleration.shape[0]):
-        u[i] = (u[i] + (dt * v[i] + late_u * a[i])) + u_from_a * acceleration[i]
-        v[i] = (v[i] + late_v * a[i]) + v_from_a * acceleration[i]
-        a[i] = acceleration[i]
+        new = acceleration[i]
+        if adds:
+            new += added[i]
+        u[i] = (u[i] + (dt * v[i] + late_u * a[i])) + u_from_a * new
+        v[i] = (v[i] + late_v * a[i]) + v_from_a * new
+        a[i] = new

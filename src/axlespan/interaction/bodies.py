@@ -16,6 +16,7 @@ import scipy.sparse as sp
 from axlespan.dynamics.alpha import Alpha
 from axlespan.dynamics.integrator import Integrator, Matrices, State, Stepper
 from axlespan.interaction.path_columns import PathColumns
+from axlespan.interaction.path_kernel import subtract_at
 from axlespan.interaction.plan import Fleet
 
 FloatArray = npt.NDArray[np.float64]
@@ -111,9 +112,9 @@ class StructureBody:
     def _add_loads(self, force: FloatArray, known: FloatArray | None) -> None:
         """Add the contact loads of the step before and those known at the new time, as the alpha method weighs them."""
         if self.integrator.weight_p:
-            force[self._loaded] -= self.integrator.weight_p * self._load
+            subtract_at(self._loaded, self.integrator.weight_p, self._load, force)
         if known is not None:
-            force[self.columns.held] -= self.integrator.weight_c * known
+            subtract_at(self.columns.held, self.integrator.weight_c, known, force)
 
     def gather(self, flat: IntArray, held: IntArray, weights: FloatArray) -> FloatArray:
         """Displacements E u (n_wheel,) at the new time as far as known, for rows (n_wheel, n_local)."""
@@ -131,14 +132,13 @@ class StructureBody:
     def take(self, coupled: FloatArray | None, known: FloatArray | None) -> None:
         """Take the loads (n_held, …) of the coupled wheels, and complete the step; known loads are in already."""
         self._loaded = self.columns.held
-        if coupled is not None:
-            self.stepper.add(self._response(coupled))
+        response = None if coupled is None else self._response(coupled)
         if coupled is None or known is None:
             given = coupled if coupled is not None else known
             self._load = given if given is not None else np.zeros((len(self._loaded), *self._shape[1:]))
         else:
             self._load = coupled + known
-        self.stepper.finish()
+        self.stepper.finish(response)
 
     def _response(self, load: FloatArray) -> FloatArray:
         """Acceleration under the loads (n_held, …) of the coupled wheels at the new time."""
@@ -216,8 +216,7 @@ class FleetBody:
 
     def take(self, forces: FloatArray) -> None:
         """Take the contact forces (n_coupled,) of the new time, and complete the step."""
-        self.stepper.add(np.asarray(self._columns @ forces))
-        self.stepper.finish()
+        self.stepper.finish(np.asarray(self._columns @ forces))
         self.forces = forces
 
     def put(self, values: FloatArray, forces: FloatArray) -> None:

@@ -28,6 +28,7 @@ Evaluate = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 
 # A Newton step below this share of the scale ends the iteration: the error is then about its square.
 _TOLERANCE = 1e-11
+_ROUNDING = 1e-14  # a residual below this share of it is zero
 _LIMIT, _HALVINGS = 60, 8
 
 
@@ -86,6 +87,8 @@ def solve_interface(
         residuals.append(size / interface.scale)
         if not np.isfinite(size):
             break
+        if size <= _ROUNDING * interface.scale:
+            return Solution(forces, newton.coordinates(forces), residuals)
         step = np.linalg.solve(jacobian, residual[..., None])[..., 0]
         forces, residual, jacobian, now = newton.advance(forces, step, residual)
         same = held is None or now is None or np.array_equal(held, now)

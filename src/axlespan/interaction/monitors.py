@@ -223,6 +223,7 @@ class EnergyMonitor:
         self.released: Collection[int] = ()  # steps after which a wheel let go
         steps = plan.settings.steps
         count = max(_FEWEST_SAMPLES, min(_ENERGY_SAMPLES, _SAMPLED_DOFS // plan.structure.size))
+        count = plan.settings.energy_samples or count
         self._samples = set(np.unique(np.linspace(1, steps, min(count, steps)).astype(int)).tolist())
         # A balanced step needs the one before it.
         self.steps = frozenset(self._samples | {step - 1 for step in self._samples})

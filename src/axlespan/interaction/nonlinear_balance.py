@@ -83,11 +83,17 @@ class Balance:
         rates = self.closing_rates(rows, structure, vehicles, time)[chosen]
         on_structure, on_vehicles, system = self._responses(rows, chosen)
         impulse = np.linalg.solve(system, rates)
+        before = self._kinetic(structure, vehicles)
         structure.v[:] -= on_structure @ impulse
         vehicles.v[:] += on_vehicles @ impulse
         result = np.zeros(len(touching))
         result[chosen] = impulse
-        return result, 0.5 * float(rates @ impulse)
+        return result, before - self._kinetic(structure, vehicles)
+
+    def _kinetic(self, structure: State, vehicles: State) -> float:
+        masses = self.plan.structure.M, self.plan.fleet.matrices.M
+        both = zip(masses, (structure.v, vehicles.v), strict=True)
+        return sum(0.5 * float(v @ (mass @ v)) for mass, v in both)
 
     def accelerate(
         self,

@@ -75,7 +75,8 @@ class NonlinearCoupling:
         self.laws, self.balance, self.field, self.flights = laws, balance, field, flights
         self.approach, self.before = approach.copy(), approach.copy()  # of the last two steps
         self.touching = touching.copy()
-        self.scale = max(float(np.abs(laws.static).max(initial=0.0)), 1.0)
+        held = np.concatenate([balance.plan.fleet.weight, field.springs.held if field.springs.n else []])
+        self.scale = max(float(np.abs(held).max(initial=0.0)), 1.0)
         self.iterations: list[int] = []  # of each step
         self.residuals: list[float] = []  # of the slowest step
         self.landings, self.loss = 0, 0.0  # [J]

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from scipy.linalg.blas import daxpy
 
 from axlespan.dynamics.integrator import Integrator
-from axlespan.interaction.path_kernel import compiled_sandwich
+from axlespan.interaction.path_kernel import compiled_sandwich, subtract_at
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -56,6 +56,7 @@ class PathColumns:
         self.held = np.empty(0, dtype=np.int64)
         self.position = np.zeros(integrator.size, dtype=np.int64)  # d.o.f. -> place among the held ones
         self._columns = np.empty((0, integrator.size))
+        self._force = np.empty(0)
         # (1+α) β Δt² R A⁻¹ Rᵀ of the held d.o.f. [m/N]: row i begins at entry offset[i]; it is zero but from low[i] to
         # high[i].
         self.compliance = np.empty((0, 0))
@@ -162,12 +163,18 @@ class PathColumns:
             self._there[some] = True
 
     def response(self, load: FloatArray) -> FloatArray:
-        """Acceleration (n,) or (n, k) of the structure under loads (n_held,) or (n_held, k), downward: -(1+α) A⁻¹ Rᵀ load."""
+        """Acceleration (n,) or (n, k) of the structure under loads (n_held,) or (n_held, k), downward: -(1+α) A⁻¹ Rᵀ load.
+
+        The array may be used again by the next call.
+        """
         weight = -self.integrator.weight_c
         if self.solves_again:
-            force = np.zeros((self.integrator.size, *load.shape[1:]))
-            force[self.held] = weight * load
-            return self.integrator.factor.solve(force, out=force)
+            shape = (self.integrator.size, *load.shape[1:])
+            if self._force.shape != shape:
+                self._force = np.empty(shape)
+            self._force[...] = 0.0
+            subtract_at(self.held, -weight, load, self._force)
+            return self.integrator.factor.solve(self._force, out=self._force)
         if load.ndim > 1 or self._columns.size <= _WHOLE_PRODUCT_UP_TO:
             return np.asarray(self._columns.T @ (weight * load))
         result = np.zeros(self.integrator.size)

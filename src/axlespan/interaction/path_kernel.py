@@ -1,4 +1,4 @@
-"""Compliance of the structure under the wheels, E Z Eᵀ, compiled by numba."""
+"""Loads of wheels on the structure, and its compliance under them, E Z Eᵀ, compiled by numba."""
 
 from __future__ import annotations
 
@@ -6,8 +6,34 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from axlespan.linalg.compiled import Loop, compiled
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+
+@cache
+def _compiled_scatter() -> Loop | None:
+    return compiled(_scatter)
+
+
+def subtract_at(places: IntArray, factor: float, load: FloatArray, force: FloatArray) -> None:
+    """``force[places] -= factor * load`` for loads (m,) or (m, k), places all different."""
+    if not len(places):  # no wheel was on the structure
+        return
+    if (loop := _compiled_scatter()) is None:
+        force[places] -= factor * load
+        return
+    loop(places, factor, load.reshape(len(places), -1), force.reshape(len(force), -1))
+
+
+def _scatter(places: Any, factor: float, load: Any, force: Any) -> None:
+    for i in range(places.shape[0]):
+        row = np.uint64(places[i])  # unsigned: see the band kernel
+        for c in range(load.shape[1]):
+            force[row, c] -= factor * load[i, c]
 
 
 @cache

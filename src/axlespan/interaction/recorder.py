@@ -128,6 +128,10 @@ class Recorder:
     def first_bad(self, tape: LaneTape) -> int | None:
         """The first step with a value that is not finite or a contact force that has run away."""
         limit = _DIVERGED * max(float(np.abs(self.plan.fleet.weight).max()), 1.0)
+        with np.errstate(all="ignore"):  # a sum is finite only if everything in it is
+            totals = [part.sum() for part in (tape.vehicles, tape.near, tape.sums)]
+            if np.isfinite(totals).all() and np.abs(tape.forces).max(initial=0.0) < limit:
+                return None
         good = np.isfinite(tape.vehicles).all(axis=(0, 2)) & np.isfinite(tape.near).all(axis=(0, 2))
         with np.errstate(invalid="ignore"):
             good &= (np.abs(tape.forces) < limit).all(axis=1)

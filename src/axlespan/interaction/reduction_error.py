@@ -34,7 +34,8 @@ _SAMPLES = 12
 def _samples(plan: Plan) -> list[int]:
     """Time indices, spread over the run to its end."""
     steps = plan.settings.steps
-    return np.unique(np.linspace(0, steps, min(_SAMPLES, steps) + 1)[1:].astype(int)).tolist()
+    spread = np.linspace(0, steps, min(_SAMPLES, steps) + 1)[1:].astype(int)
+    return [int(step) for step in np.unique(spread)]
 
 
 class ReductionError:

@@ -38,7 +38,7 @@ class SpringField:
         self.rate = np.zeros(springs.n)
         self.active = np.flatnonzero(deviation)
         self.largest = len(self.active)  # unknowns of a step, so far
-        self.history: list[FloatArray] = []  # q of each step, where springs stand on supports
+        self.history = [self.q]  # of the start and each step, where springs stand on supports
         self._dofs = np.unique(springs.rows.indices) if springs.n else np.empty(0, dtype=np.int64)
         self._local = springs.rows[:, self._dofs]
         self._columns: FloatArray | None = None
@@ -94,6 +94,8 @@ class SpringField:
 
     def meet(self, held: IntArray, weights: FloatArray, at: IntArray, n_wheel: int) -> None:
         """Note which d.o.f. the wheels on the structure load (n_wheel, n_local), and their places in the interface."""
+        if not self.springs.n or not len(self._path):  # no wheel is on the structure yet
+            at = at[:0]
         self._held, self._weights, self._at, self._n_wheel = held, weights, at, n_wheel
 
     def joined(self, S: FloatArray, gap: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:

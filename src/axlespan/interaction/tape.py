@@ -48,7 +48,7 @@ class Tape:
         self.watched, self._lanes = watched, lanes
         self._sizes = (n_vehicle_dof, n_contact)
         places = watched.dofs if watched.reading is None else np.arange(watched.reading.shape[1])
-        self._flat = (places[:, None] * lanes + np.arange(lanes)).ravel()
+        self._flat = (places * lanes + np.arange(lanes)[:, None]).ravel()  # what belongs to a lane in one piece
         self._n_step = 0
 
     def start(self, n_step: int) -> None:
@@ -84,12 +84,12 @@ class Tape:
         """The tape of one crossing: some watched d.o.f. (n_selected,), its vehicles' d.o.f. and contacts."""
         n = self.filled
         at, reading = np.searchsorted(self.watched.dofs, dofs), self.watched.reading
+        width = len(self._flat) // self._lanes
+        near = self._near[:n, :, lane * width : (lane + 1) * width]
         if reading is not None:
-            near = self._near[:n, :, lane :: self._lanes] @ reading[at].T
-        elif len(at) == len(self.watched.dofs):
-            near = self._near[:n, :, lane :: self._lanes]
-        else:
-            near = self._near[:n, :, at * self._lanes + lane]
+            near = near @ reading[at].T
+        elif len(at) < width:
+            near = near[:, :, at]
         return LaneTape(
             near.transpose(1, 0, 2),
             self._vehicles[:n, :, vehicle_dofs].transpose(1, 0, 2),

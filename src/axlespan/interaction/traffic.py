@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -87,7 +87,7 @@ def _first_touch(one: Run, other: Run, end: float) -> float | None:
     times = np.unique(np.clip(corners, 0.0, end))
     if _apart(one, other, np.zeros(1))[0] <= 0.0:
         return 0.0
-    for begin, stop in zip(times[:-1], times[1:], strict=True):
+    for begin, stop in pairwise(times.tolist()):
         at = np.array([begin, 0.5 * (begin + stop), stop])
         found = [
             root

@@ -36,8 +36,11 @@ Arrays = dict[str, npt.NDArray[Any]]
 #: Name of the group in result.nc, and of the variable that holds its text.
 GROUP, TEXT = "drawing", "content"
 
-# Points of a line; more are thinned where it is straight.
+# Points of a line between two others are left out if they miss it by no more than this [m].
 _STRAIGHT = 1e-6
+
+# Points of the irregularity.
+_PROFILE = 1501
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,8 +48,9 @@ class Drawing:
     """Geometry of a crossing, as plain data.
 
     ``content`` holds ``lines`` (name -> rows of s, x, y, z), ``deck`` (its name), ``supports`` (name,
-    components, point), ``vehicles`` (name, length, wheels, bodies, static forces), ``placements`` (vehicle,
-    distance behind the head) and ``space`` (whether the structure is more than a line). ``arrays`` holds
+    components, point), ``vehicles`` (name, overhangs, wheels, bodies, static forces), ``trains`` (name,
+    direction, placements as vehicle and distance behind the head, lines of the contacts), ``profile`` (r under the
+    first wheel, at even steps) and ``space`` (whether the structure is more than a line). ``arrays`` holds
     ``points`` (n, 3) [m], ``dofs`` (n, 3), the columns of the fields for x, y, z or -1, ``beams`` (n_beam, 2),
     ``springs`` (n_spring, 2), ``faces`` (n_face, 3) and, with fields of solids and shells, ``face_stress``
     (n_field, n_face), von Mises [N/m^2].
@@ -68,12 +72,37 @@ def drawing_of(crossing: Crossing, result: Result | None = None) -> Drawing:
         "deck": next((name for name, path in structure.lines.items() if path is deck), None),
         "supports": _supports(structure),
         "structure": structure.name,
-        "train": crossing.train_names,
         "space": bool(len(arrays.get("faces", ()))),
         "vehicles": [_vehicle(vehicle, crossing.gravity) for vehicle in kinds],
-        "placements": [[number[id(item.vehicle)], item.behind] for item in crossing.placements],
+        "trains": [
+            {
+                "name": run.train.name,
+                "direction": run.course.direction,
+                "placements": [[number[id(item.vehicle)], item.behind] for item in run.train.placements],
+                "lines": [crossing.line_name(name) for name in run.lines],
+            }
+            for run in crossing.runs
+        ],
+        "profile": _profile(crossing, result),
     }
     return Drawing(content, arrays)
+
+
+def _profile(crossing: Crossing, result: Result | None) -> dict[str, Any] | None:
+    """The irregularity under the first wheel near the structure; None where it is even."""
+    path = crossing.structure.line()
+    length = path.stop - path.start
+    begin, end = path.start - 0.5 * length, path.stop + 0.5 * length
+    if result is not None and result.contact_position.size:
+        run = result.contact_position[:, 0]
+        begin, end = max(begin, float(run.min())), min(end, float(run.max()))
+    if not end > begin:
+        return None
+    s = np.linspace(begin, end, _PROFILE)
+    r = np.asarray(crossing.runs[0].profiles[0].value(s), dtype=float)
+    if not (np.all(np.isfinite(r)) and np.any(r)):
+        return None
+    return {"from": begin, "step": (end - begin) / (_PROFILE - 1), "r": np.round(r, 8).tolist()}
 
 
 def _line(structure: Structure, name: str) -> list[list[float]]:
@@ -111,7 +140,8 @@ def _vehicle(vehicle: Vehicle, gravity: float) -> dict[str, Any]:
         static = []
     return {
         "name": vehicle.name,
-        "length": vehicle.length,
+        "ahead": vehicle.front_overhang if vehicle.length is not None else None,
+        "astern": vehicle.rear_overhang if vehicle.length is not None else None,
         "bodies": dict(vehicle.bodies),
         "wheels": [
             {"name": point.name, "behind": point.behind, "dof": point.dof, "line": point.line}

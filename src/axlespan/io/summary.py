@@ -41,6 +41,11 @@ _COMPUTATION = {
     "factor_bytes": "factor_bytes",
     "iterations": "iterations",
     "factorizations": "factorizations",
+    "contact_laws": "contact_laws",
+    "newton_iterations": "newton_iterations",
+    "newton_iterations_largest": "newton_iterations_largest",
+    "nonlinear_springs": "nonlinear_springs",
+    "nonlinear_springs_active": "nonlinear_springs_active",
     "wall_time": "wall_time_s",
 }
 
@@ -87,6 +92,7 @@ def summary(
         "sensors": _sensors(result),
         "contact_forces": force_extremes(result, _ends(crossing)),
         "tension": _tension(result),
+        "flights": _flights(result),
         "vehicle_accelerations": _vehicle_accelerations(result),
         "support_reactions": _reactions(result),
         "checks": checks,
@@ -217,6 +223,31 @@ def _tension(result: Result) -> dict[str, Any]:
         for episode in sorted(episodes, key=lambda episode: float(episode["start"]))[:_EPISODES]
     ]
     return {"episodes": int(result.checks.get("tension_episodes") or 0), "first": shown}
+
+
+def _flights(result: Result) -> dict[str, Any] | None:
+    """Wheels in the air: the longest flights; null where no wheel can leave the line."""
+    count = result.checks.get("flight_count")
+    if count is None:
+        return None
+    flights = sorted(result.checks["flights"], key=lambda flight: flight["start"] - flight["stop"])
+    shown = [
+        {
+            "contact": flight["contact"],
+            "start_s": clean(flight["start"]),
+            "stop_s": clean(flight["stop"]),
+            "start_position_m": flight["start_position"],
+            "stop_position_m": flight["stop_position"],
+            "largest_gap_m": flight["gap"],
+            "closing_speed_m_per_s": flight["closing_speed"] if flight["landed"] else None,
+        }
+        for flight in flights[:_EPISODES]
+    ]
+    return {
+        "count": int(count),
+        "landing_loss_J": result.facts.get("landing_loss"),
+        "longest": shown,
+    }
 
 
 def _vehicle_accelerations(result: Result) -> dict[str, dict[str, Any]]:

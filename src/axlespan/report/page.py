@@ -98,7 +98,7 @@ def _page(stored: Stored) -> str:
         "version": escape(str(summary.get("version") or axlespan.__version__)),
         "badge": _outcome_badge(summary),
         "notices": _notices(stored, summary, content),
-        "words": _words(summary, case, units),
+        "words": _words(summary, case, units, ends),
         "cards": _cards(summary),
         "sketch": sketch(drawing, units, ends),
         "given": _given(case, stored),
@@ -137,10 +137,10 @@ def _title(summary: Mapping[str, Any], stored: Stored) -> str:
 
 
 def _ends(drawing: Drawing | None, summary: Mapping[str, Any]) -> tuple[float, float] | None:
-    """Ends of the main running line [m]."""
+    """Ends of the deck's line, or else of the main running line [m]."""
     lines = {} if drawing is None else drawing.content.get("lines", {})
-    if lines:
-        rows = next(iter(lines.values()))
+    if drawing is not None and lines:
+        rows = lines.get(drawing.content.get("deck") or "") or next(iter(lines.values()))
         return float(rows[0][0]), float(rows[-1][0])
     run = summary.get("run") or {}
     begin, end = run.get("structure_from_m"), run.get("structure_to_m")
@@ -175,10 +175,13 @@ def _notices(stored: Stored, summary: Mapping[str, Any], content: Mapping[str, A
     return f'<aside class="notices" aria-label="Notices"><ul>{items}</ul></aside>' if items else ""
 
 
-def _words(summary: Mapping[str, Any], case: Mapping[str, Any], units: list[Unit]) -> str:
-    wheels = [behind for unit in units for _, behind, *_ in unit.wheels]
+def _words(
+    summary: Mapping[str, Any], case: Mapping[str, Any], units: list[Unit], ends: tuple[float, float] | None
+) -> str:
+    wheels = [behind for unit in units if unit.train == 0 for _, behind, *_ in unit.wheels]
     base = max(wheels) - min(wheels) if wheels else None
-    return "".join(f"<p>{escape(text)}</p>" for text in sentences(summary, case, base))
+    length = None if ends is None else ends[1] - ends[0]
+    return "".join(f"<p>{escape(text)}</p>" for text in sentences(summary, case, base, length))
 
 
 def _cards(summary: Mapping[str, Any]) -> str:

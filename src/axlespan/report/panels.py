@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from axlespan.io.dof_units import is_rotation
 from axlespan.report.pack import Pack
+from axlespan.report.shapes import LOW
 from axlespan.report.stored import Stored
 from axlespan.report.thinning import chosen_columns, rows_for
 from axlespan.report.units import shown_unit
@@ -134,7 +135,7 @@ def _panel(stored: Stored, pack: Pack, group: Group) -> dict[str, Any]:
     columns = [group.columns[i] for i in kept]
     n = len(stored.time)
     rows = rows_for(n, columns, lambda column: stored.column(group.variable, column))
-    first = set(chosen_columns([sizes[i] for i in kept], _AT_FIRST))
+    first = _at_first([names[i] for i in kept], [sizes[i] for i in kept])
     series = []
     for place, (i, column) in enumerate(zip(kept, columns, strict=True)):
         values = factor * stored.column(group.variable, column)[rows]
@@ -148,6 +149,12 @@ def _panel(stored: Stored, pack: Pack, group: Group) -> dict[str, Any]:
         "series": series,
         "note": _note(n, len(rows), len(names), len(kept)),
     }
+
+
+def _at_first(names: Sequence[str], sizes: Sequence[float]) -> set[int]:
+    """Curves that show at first; of vehicles the bodies, where there are bogies too."""
+    places = [i for i, name in enumerate(names) if not LOW.search(name)] or list(range(len(names)))
+    return {places[i] for i in chosen_columns([sizes[i] for i in places], _AT_FIRST)}
 
 
 def _range(values: FloatArray) -> float:

@@ -33,19 +33,62 @@ def scene(
     content: dict[str, Any] = {
         "ends": ends,
         "t": pack.add(time, "f8"),
-        "head": pack.add(stored.column("contact_position", 0)[frames], "f8"),
+        "trains": _trains(stored, pack, frames, drawing, units),
         "line": _line(stored, pack, frames),
         "ratio": _ratio(stored, pack, frames),
         "units": [_unit(unit) for unit in units],
         "moves": _moves(stored, pack, frames, units),
         "supports": _supports(drawing, ends),
+        "profile": _profile(pack, drawing),
         "notes": [],
     }
+    content["most"] = _largest_motion(stored, frames)
+    if drawing is not None and _on_track(drawing):
+        content["notes"].append(
+            "The track is drawn on the deck: wheels sink into it by as much as the rail deflects against the deck."
+        )
     if content["line"] is None:
         content["notes"].append(
             "The motion along the line was not kept (output: line: 0), so the structure is drawn at rest."
         )
     return content
+
+
+def _trains(
+    stored: Stored, pack: Pack, frames: IntArray, drawing: Drawing | None, units: Sequence[Unit]
+) -> list[dict[str, Any]]:
+    """Each train: where its first wheel is, and which way it runs."""
+    known = [] if drawing is None else drawing.content.get("trains", [])
+    found = []
+    for number in sorted({unit.train for unit in units}):
+        first = min(wheel[0] for unit in units if unit.train == number for wheel in unit.wheels)
+        direction = int(known[number]["direction"]) if number < len(known) else 1
+        column = stored.column("contact_position", first)[frames]
+        found.append({"head": pack.add(column, "f8"), "direction": direction})
+    return found
+
+
+def _profile(pack: Pack, drawing: Drawing | None) -> dict[str, Any] | None:
+    """The irregularity that the wheels of the first train run on."""
+    known = None if drawing is None else drawing.content.get("profile")
+    return None if known is None else {"from": known["from"], "step": known["step"], "r": pack.add(known["r"])}
+
+
+def _on_track(drawing: Drawing) -> bool:
+    """Whether wheels run on another line than that of the deck."""
+    lines = {name for train in drawing.content.get("trains", []) for name in train["lines"]}
+    ends = {name: (rows[0][0], rows[-1][0]) for name, rows in drawing.content.get("lines", {}).items()}
+    deck = ends.get(drawing.content.get("deck") or "")
+    return deck is not None and any(ends.get(name, deck) != deck for name in lines)
+
+
+def _largest_motion(stored: Stored, frames: IntArray) -> float:
+    """Largest vertical motion of a vehicle's part [m]."""
+    if not stored.has("vehicle_displacement"):
+        return 0.0
+    vertical = [i for i, name in enumerate(stored.names("vehicle_dof")) if name.endswith(".z")]
+    table = stored.rows("vehicle_displacement", frames)[:, vertical]
+    return float(np.nanmax(np.abs(table), initial=0.0))
 
 
 def _frames(stored: Stored, units: Sequence[Unit]) -> IntArray:
@@ -77,6 +120,7 @@ def _ratio(stored: Stored, pack: Pack, frames: IntArray) -> dict[str, Any] | Non
 def _unit(unit: Unit) -> dict[str, Any]:
     return {
         "name": unit.name,
+        "train": unit.train,
         "front": unit.front,
         "rear": unit.rear,
         "wheels": [list(wheel) for wheel in unit.wheels],

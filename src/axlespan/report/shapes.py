@@ -20,7 +20,8 @@ _SMALL = (1.05, 2.35)  # of the body of a single sprung mass
 _OVERHANG, _GAP = 2.6, 0.5  # of a body over its last wheels; between bodies
 _FREE = 2.4  # length of a body on one wheel
 
-_LOW = re.compile(r"bogie|truck|frame|wheelset", re.IGNORECASE)
+#: Names of parts that stand below the car body.
+LOW = re.compile(r"bogie|truck|frame|wheelset", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -39,7 +40,8 @@ class Box:
 class Unit:
     """A vehicle of the train."""
 
-    number: int  # from 1, from the head
+    number: int  # from 1, from the head of the first train on
+    train: int  # from 0
     name: str
     front: float  # behind the head of the train [m]; negative is before its first wheel
     rear: float
@@ -50,20 +52,31 @@ class Unit:
 
 def units_of(stored: Stored, drawing: Drawing | None) -> list[Unit]:
     """The vehicles of a result; from names and positions of contacts where it has no drawing."""
-    if drawing is not None and drawing.content.get("placements"):
-        content = drawing.content
-        kinds = content["vehicles"]
-        placed = [(kinds[kind], float(behind)) for kind, behind in content["placements"]]
-    else:
-        placed = _from_names(stored)
-    found, contact = [], 0
+    if drawing is None or not drawing.content.get("trains"):
+        return _train(0, _from_names(stored), 0, 0, [])
+    found: list[Unit] = []
+    kinds = drawing.content["vehicles"]
+    for number, train in enumerate(drawing.content["trains"]):
+        placed = [(kinds[kind], float(behind)) for kind, behind in train["placements"]]
+        contact = sum(len(unit.wheels) for unit in found)
+        found += _train(number, placed, len(found), contact, train["lines"])
+    return found
+
+
+def _train(
+    train: int, placed: Sequence[tuple[Mapping[str, Any], float]], first: int, contact: int, lines: Sequence[str]
+) -> list[Unit]:
+    """The vehicles of one train; ``first`` vehicles and ``contact`` wheels come before it."""
+    found, own = [], 0
     ends = [behind for _, behind in placed]
     for i, (kind, behind) in enumerate(placed):
-        last = behind + max(wheel["behind"] for wheel in kind["wheels"])
-        room_before = behind - _last(placed[i - 1]) if i else np.inf
-        room_after = ends[i + 1] - last if i + 1 < len(placed) else np.inf
-        found.append(_unit(i + 1, kind, behind, contact, room_before, room_after))
-        contact += len(kind["wheels"])
+        last = _last(placed[i])
+        before = behind - _last(placed[i - 1]) if i else np.inf
+        after = ends[i + 1] - last if i + 1 < len(placed) else np.inf
+        count = len(kind["wheels"])
+        named = lines[own : own + count] or [""] * count
+        found.append(_unit((first + i + 1, train), kind, behind, contact + own, (before, after), named))
+        own += count
     return found
 
 
@@ -73,30 +86,33 @@ def _last(item: tuple[Mapping[str, Any], float]) -> float:
 
 
 def _unit(
-    number: int, kind: Mapping[str, Any], behind: float, contact: int, before: float, after: float
+    numbers: tuple[int, int],
+    kind: Mapping[str, Any],
+    behind: float,
+    contact: int,
+    room: tuple[float, float],
+    lines: Sequence[str],
 ) -> Unit:
+    number, train = numbers
     places = [float(wheel["behind"]) for wheel in kind["wheels"]]
-    base, length = max(places), kind.get("length")
-    if length:
-        reach_front = reach_rear = 0.5 * max(0.0, float(length) - base)
-    elif base > 0.0:
-        reach_front = reach_rear = _OVERHANG
-    else:
-        reach_front = reach_rear = 0.5 * _FREE
-    front = behind - min(reach_front, 0.5 * max(before - _GAP, 0.6))
-    rear = behind + base + min(reach_rear, 0.5 * max(after - _GAP, 0.6))
+    base = max(places)
+    front, rear = behind - float(kind.get("ahead") or 0.0), behind + base + float(kind.get("astern") or 0.0)
+    if kind.get("ahead") is None:
+        reach = _OVERHANG if base > 0.0 else 0.5 * _FREE
+        front = behind - min(reach, 0.5 * max(room[0] - _GAP, 0.6))
+        rear = behind + base + min(reach, 0.5 * max(room[1] - _GAP, 0.6))
     wheels = tuple(
-        (contact + i, behind + place, f"{number}.{wheel['dof']}" if wheel.get("dof") else "", str(wheel.get("line") or ""))
-        for i, (wheel, place) in enumerate(zip(kind["wheels"], places, strict=True))
+        (contact + i, behind + place, f"{number}.{wheel['dof']}" if wheel.get("dof") else "", line)
+        for i, (wheel, place, line) in enumerate(zip(kind["wheels"], places, lines, strict=True))
     )
     boxes = _boxes(kind.get("bodies") or {}, number, behind, sorted(set(places)), front, rear)
-    return Unit(number, str(kind["name"]), front, rear, wheels, boxes, tuple(kind.get("static_N") or ()))
+    return Unit(number, train, str(kind["name"]), front, rear, wheels, boxes, tuple(kind.get("static_N") or ()))
 
 
 def _boxes(
     bodies: Mapping[str, float], number: int, behind: float, places: Sequence[float], front: float, rear: float
 ) -> tuple[Box, ...]:
-    low = {name: place for name, place in bodies.items() if _LOW.search(name)}
+    low = {name: place for name, place in bodies.items() if LOW.search(name)}
     high = {name: place for name, place in bodies.items() if name not in low}
     boxes = []
     for name, place in low.items():
@@ -107,8 +123,7 @@ def _boxes(
     cuts = [front, *(behind + 0.5 * (a[1] + b[1]) for a, b in zip(centers, centers[1:], strict=False)), rear]
     bottom, top = _SMALL if len(places) == 1 else _BODY
     for (name, _), begin, end in zip(centers, cuts, cuts[1:], strict=False):
-        gap = _GAP if len(centers) > 1 else 0.0
-        length = max(end - begin - gap, 0.4)
+        length = max(end - begin - _GAP, 0.4)
         boxes.append(Box(f"{number}.{name}", 0.5 * (begin + end), length, bottom, top, False))
     return tuple(boxes)
 
@@ -141,7 +156,7 @@ def _spread(parts: Mapping[str, None], wheels: Sequence[Mapping[str, Any]]) -> d
     """Centers of bodies of which only the names are known: bogies over equal shares of the wheels."""
     places = [float(wheel["behind"]) for wheel in wheels]
     centers: dict[str, float] = {}
-    for group in ([p for p in parts if _LOW.search(p)], [p for p in parts if not _LOW.search(p)]):
+    for group in ([p for p in parts if LOW.search(p)], [p for p in parts if not LOW.search(p)]):
         for i, name in enumerate(group):
             share = np.array_split(np.array(places), len(group))[i]
             centers[name] = float(share.mean()) if len(share) else float(np.mean(places))

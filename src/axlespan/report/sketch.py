@@ -30,6 +30,7 @@ def sketch(drawing: Drawing | None, units: Sequence[Unit], ends: tuple[float, fl
     if ends is None or ends[1] <= ends[0]:
         return ""
     begin, end = ends
+    units = [unit for unit in units if unit.train == 0]
     length = end - begin
     head = begin + 0.82 * length
     train = max((unit.rear for unit in units), default=0.0)
@@ -56,7 +57,8 @@ def sketch(drawing: Drawing | None, units: Sequence[Unit], ends: tuple[float, fl
     hidden = len(units) - len(shown)
     note = ""
     if hidden > 0:
-        note = f'<text class="sk-note" x="6" y="16">{hidden} more vehicles follow; the train is {plain(train)} m long</text>'
+        below_text = f'x="{_WIDTH - 6:g}" y="{height - 8:.1f}"'
+        note = f'<text class="sk-note" {below_text}>{hidden} more vehicles follow; the train is {plain(train)} m long</text>'
     title = f"Side view to scale: structure of {plain(length)} m with the train on it"
     return (
         f'<svg class="sketch" viewBox="0 0 {_WIDTH:g} {height:.1f}" role="img" aria-label="{escape(title)}" '

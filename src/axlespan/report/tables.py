@@ -24,7 +24,8 @@ _BADGES = {
     "attention": ("warn", "!", "attention"),
     "not checked": ("none", "–", "not checked"),
     "not applicable": ("none", "–", "not applicable"),
-    "information": ("none", "i", "information"),
+    "reported": ("none", "i", "reported"),
+    "not assessed": ("none", "–", "not assessed"),
 }
 
 
@@ -49,13 +50,14 @@ def verdict_table(summary: Summary) -> str:
         clause = escape(str(verdict.get("clause") or ""))
         source = verdict.get("source")
         title = f' title="{escape(str(source), quote=True)}"' if source else ""
-        reason = verdict.get("reason")
+        reason = verdict.get("reason") or verdict.get("note")
         why = f'<div class="why">{escape(str(reason))}</div>' if reason else ""
+        least = "at least " if verdict.get("at_least") and verdict.get("limit") is not None else ""
         rows.append(
             f'<tr><td data-label="Quantity">{escape(str(verdict.get("quantity") or ""))}{why}</td>'
             f'<td data-label="Clause"{title}>{clause}</td>'
-            f'<td class="n" data-label="Value">{_amount(verdict.get("value"), factor)} {unit}</td>'
-            f'<td class="n" data-label="Limit">{_amount(verdict.get("limit"), factor)} {unit}</td>'
+            f'<td class="n" data-label="Value">{_amount(verdict.get("value"), factor, unit)}</td>'
+            f'<td class="n" data-label="Limit">{least}{_amount(verdict.get("limit"), factor, unit)}</td>'
             f'<td data-label="Used">{bar(verdict.get("utilization"))}</td>'
             f'<td data-label="Where, when">{_place(verdict)}</td>'
             f'<td data-label="Verdict">{badge(str(verdict.get("outcome") or ""))}</td></tr>'
@@ -188,8 +190,11 @@ def _table(caption: str, heads: Sequence[str], rows: Sequence[str], numeric: Seq
     )
 
 
-def _amount(value: Any, factor: float) -> str:
-    return number(factor * value) if isinstance(value, (int, float)) and not isinstance(value, bool) else "–"
+def _amount(value: Any, factor: float, unit: str = "") -> str:
+    """A value with its unit; a dash where there is none."""
+    if not isinstance(value, (int, float)) or isinstance(value, bool):
+        return "–"
+    return f"{number(factor * value)} {unit}".rstrip()
 
 
 def _unit_text(unit: str) -> str:

@@ -31,25 +31,26 @@ def case_content(text: str) -> dict[str, Any]:
     return found if isinstance(found, dict) else {}
 
 
-def sentences(summary: Mapping[str, Any], case: Mapping[str, Any], wheelbase: float | None) -> list[str]:
-    """What was computed, as a few sentences."""
+def sentences(
+    summary: Mapping[str, Any], case: Mapping[str, Any], wheelbase: float | None, length: float | None
+) -> list[str]:
+    """What was computed, as a few sentences; wheelbase of the train and length of the structure in m."""
     run = summary.get("run") or {}
-    found = [_crossing(run, wheelbase)]
+    found = [_crossing(run, wheelbase, length)]
     found.append(_irregularity(case))
     found.append(_computation(run, summary))
     return [sentence for sentence in found if sentence]
 
 
-def _crossing(run: Mapping[str, Any], wheelbase: float | None) -> str:
+def _crossing(run: Mapping[str, Any], wheelbase: float | None, length: float | None) -> str:
     train, structure = run.get("train"), run.get("structure")
     if not train or not structure:
         return ""
     wheels = run.get("contacts") or 0
     count = f"{wheels} wheel{'s' if wheels != 1 else ''}"
     base = f", {plain(wheelbase)} m from the first to the last" if wheelbase else ""
-    begin, end = run.get("structure_from_m"), run.get("structure_to_m")
-    length = f", {plain(end - begin)} m long" if begin is not None and end is not None else ""
-    return f"A train ({train}; {count}{base}) crosses a structure ({structure}{length}) {_speed(run)}."
+    long = f", {plain(length)} m long" if length else ""
+    return f"A train ({train}; {count}{base}) crosses a structure ({structure}{long}) {_speed(run)}."
 
 
 def _speed(run: Mapping[str, Any]) -> str:

@@ -76,10 +76,11 @@ def deflection(given: Given) -> list[Verdict]:
         )
         if not len(inside):
             continue
-        row, column = np.unravel_index(int(np.argmax(-moved[:, inside])), (len(moved), len(inside)))
-        size = float(-moved[row, inside[column]])
+        place = np.unravel_index(int(np.argmax(-moved[:, inside])), (len(moved), len(inside)))
+        at = (int(place[0]), int(inside[place[1]]))
+        size = float(-moved[at])
         if best is None or size / span > best[0] / best[1]:
-            best = (size, span, int(row), int(inside[column]))
+            best = (size, span, *at)
     if best is None:
         return [not_assessed(check, clause, quantity, "no recorded point lies in a span")]
     size, span, row, column = best

@@ -80,7 +80,7 @@ def contact_force(given: Given) -> list[Verdict]:
 
 
 def loss_of_contact(given: Given) -> list[Verdict]:
-    """Episodes in which a wheel held to the rail pulls at it, where a free one would lift off; over all steps."""
+    """Episodes in which a wheel is off the rail, or held to it pulls at it, where a free one would lift off."""
     check, clause, quantity = "loss_of_contact", "running safety", "episodes without contact pressure"
     result = given.result
     if not result.contact or bool(np.all(given.moving_forces)):
@@ -99,7 +99,7 @@ def loss_of_contact(given: Given) -> list[Verdict]:
             check,
             clause,
             quantity,
-            float(checks["tension_episodes"]),
+            float(checks["tension_episodes"] + checks.get("flight_count", 0)),
             0.0,
             "",
             where=f"wheel {name}",

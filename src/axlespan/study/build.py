@@ -6,8 +6,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from axlespan.dynamics.alpha import Alpha
 from axlespan.errors import InputError
 from axlespan.interaction.crossing import Crossing, OtherTrain
@@ -16,8 +14,8 @@ from axlespan.interaction.settings import Iteration, settings_for
 from axlespan.running.structure import MAIN_LINE, Structure
 from axlespan.study import case_crossing
 from axlespan.study.build_checks import overlaps, require_solver, require_stable
-from axlespan.study.build_structures import structure_of
 from axlespan.study.build_irregularity import irregularity_of
+from axlespan.study.build_structures import structure_of
 from axlespan.study.build_vehicles import train_of
 from axlespan.study.built import BuiltStructure
 from axlespan.study.case_analysis import EveryFew
@@ -185,4 +183,6 @@ def _options(analysis: Any, output: Any, made: BuiltStructure) -> Mapping[str, A
         "stresses": output.stresses,
         "envelopes": output.envelopes,
         "line_points": output.line,
+        "contact": analysis.contact.law,
+        "lost_after": analysis.lost_after,
     }

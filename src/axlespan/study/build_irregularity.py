@@ -25,7 +25,12 @@ from axlespan.study.case_crossing import (
 _BASE = 1.5
 
 Case = (
-    NoIrregularity | HarmonicIrregularity | TableIrregularity | SpectrumIrregularity | LinesIrregularity | None
+    NoIrregularity
+    | HarmonicIrregularity
+    | TableIrregularity
+    | SpectrumIrregularity
+    | LinesIrregularity
+    | None
 )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from axlespan.bridges import Column, Station, continuous_beam, frame, simple_span, simple_spans
+from axlespan.bridges.condition import Damage, in_condition
 from axlespan.running.structure import Structure
 from axlespan.study import case_structure
 from axlespan.study.build_matrices import structure_of_matrices
@@ -25,18 +26,31 @@ def structure_of(case: case_structure.Structure) -> BuiltStructure:
         If something is wrong that only shows now; fields are paths under the structure.
     """
     if isinstance(case, case_structure.SimpleSpan):
-        return laid_on(BuiltStructure(_simple_span(case)), case.track)
+        return laid_on(_as_it_is(_simple_span(case), case), case.track)
     if isinstance(case, case_structure.ContinuousBeam):
-        return laid_on(BuiltStructure(_continuous_beam(case)), case.track)
+        return laid_on(_as_it_is(_continuous_beam(case), case), case.track)
     if isinstance(case, case_structure.SimpleSpans):
-        return laid_on(BuiltStructure(_simple_spans(case)), case.track)
+        return laid_on(_as_it_is(_simple_spans(case), case), case.track)
     if isinstance(case, case_structure.Frame):
-        return laid_on(BuiltStructure(_frame(case)), case.track)
+        return laid_on(_as_it_is(_frame(case), case), case.track)
     if isinstance(case, TrackStructure):
         return structure_of_track(case)
     if isinstance(case, MeshStructure):
         return structure_of_mesh(case)
     return structure_of_matrices(case)
+
+
+def _as_it_is(
+    structure: Structure,
+    case: case_structure.SimpleSpan
+    | case_structure.ContinuousBeam
+    | case_structure.SimpleSpans
+    | case_structure.Frame,
+) -> BuiltStructure:
+    """The structure with its damage, at its temperature."""
+    zones = [Damage(zone.from_, zone.to, zone.stiffness) for zone in case.damage]
+    factor = 1.0 if case.temperature is None else case.temperature.factor
+    return BuiltStructure(in_condition(structure, zones, factor))
 
 
 def _simple_span(case: case_structure.SimpleSpan) -> Structure:

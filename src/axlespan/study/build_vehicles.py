@@ -20,6 +20,7 @@ from axlespan.study.pointing import pointing
 from axlespan.vehicles import Placement, Train, Vehicle, library, load_trains
 from axlespan.vehicles.library.trains import train_of as library_train
 from axlespan.vehicles.load_trains.table import axle_table
+from axlespan.vehicles.vehicle import WheelLaw
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,6 +119,8 @@ def _entry(case: case_train.Entry, loaded: LoadedCase) -> _Built:
         train = loaded_train(train, case.loads)
     if case.line is not None:
         train = _on_line(train, case.line)
+    if case.contact is not None:
+        train = _in_contact(train, case.contact.law)
     return _Built(train, _unit(train, case.count // each if each <= case.count else 1, pitch))
 
 
@@ -133,16 +136,25 @@ def _unit(train: Train, count: int, pitch: float | None) -> Unit:
 def _of_library(case: case_train.LibraryVehicle, loaded: LoadedCase) -> tuple[Train, float | None]:
     if case.vehicle in load_trains.names():
         return Train.of(load_trains.vehicle(case.vehicle)), None
-    if case.is_file:
-        entry = library.load(loaded.folder / case.vehicle)
-    else:
-        entry = library.entry(case.vehicle)
+    name = case.vehicle
+    entry = library.load(loaded.folder / name) if case.is_file else library.entry(name)
     train = library_train(entry)
     if entry.model is None:
         return train, entry.pitch
     if entry.model.length is None and entry.length is not None:
         train = Train.of(replace(entry.model, length=entry.length))
     return train, entry.pitch
+
+
+def _in_contact(train: Train, law: WheelLaw) -> Train:
+    """The train with a law of contact for all its wheels."""
+    changed: dict[int, Vehicle] = {}
+    for item in train.placements:
+        if id(item.vehicle) not in changed:
+            points = tuple(replace(point, law=law) for point in item.vehicle.contacts)
+            changed[id(item.vehicle)] = replace(item.vehicle, contacts=points)
+    placements = (Placement(changed[id(item.vehicle)], item.behind) for item in train.placements)
+    return replace(train, placements=tuple(placements))
 
 
 def _on_line(train: Train, line: str) -> Train:

@@ -47,7 +47,7 @@ class Case(Part):
 
     @model_validator(mode="after")
     def _fits_together(self) -> Self:
-        faults = [*_sensors_off(self), *_records_late(self), *_fields_late(self)]
+        faults = [*_sensors_off(self), *_records_late(self), *_fields_late(self), *_spread_twice(self)]
         others = ((f"other_trains.{n}.train", other.train) for n, other in enumerate(self.other_trains))
         for path, train in (("train", self.train), *others):
             faults += _empty_train(train, path)
@@ -84,6 +84,14 @@ def _sensors_off(case: Case) -> list[InputError]:
             rule = f"must lie on the beam, from 0 to {show(beam.length, LENGTH, 6)}"
             faults.append(InputError(rule, field=f"output.sensors.{name}"))
     return faults
+
+
+def _spread_twice(case: Case) -> list[InputError]:
+    """Find loads that sleepers shall share where there is a track."""
+    if case.analysis.load_distribution is None or getattr(case.structure, "track", None) is None:
+        return []
+    rule = "must be left out: the structure has a track, whose rails spread the loads"
+    return [InputError(rule, field="analysis.load_distribution")]
 
 
 def _records_late(case: Case) -> list[InputError]:

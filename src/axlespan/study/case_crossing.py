@@ -253,9 +253,13 @@ class Movement(Part):
                 raise InputError("needs an acceleration", field="to_speed", fix=fix)
             return
         if self.speed is None:
-            raise InputError("goes with speed", field="acceleration", fix="Leave it out: speed_history says it")
+            raise InputError(
+                "goes with speed", field="acceleration", fix="Leave it out: speed_history says it"
+            )
         if self.acceleration == 0.0:
-            raise InputError("must not be zero", field="acceleration", fix="Leave it out for a constant speed")
+            raise InputError(
+                "must not be zero", field="acceleration", fix="Leave it out for a constant speed"
+            )
         if self.to_speed is not None and (self.to_speed - self.speed) * self.acceleration <= 0.0:
             way = "more" if self.acceleration > 0.0 else "less"
             raise InputError(

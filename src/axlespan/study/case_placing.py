@@ -7,6 +7,8 @@ from typing import Annotated, Self
 from pydantic import Field, model_validator
 
 from axlespan.errors import InputError
+from axlespan.study.case_contact import KINDS as CONTACT_KINDS
+from axlespan.study.case_contact import Contact
 from axlespan.study.checks import Part
 from axlespan.study.quantities import Distance, Few, Flag, Name, Spacing
 from axlespan.units import LENGTH, show
@@ -23,6 +25,8 @@ class Placed(Part):
     """Distance of the first wheel behind the last wheel of the entry before."""
     offset: Distance | None = None
     """Distance of the first wheel behind the first wheel of the train."""
+    contact: Annotated[Contact | None, Field(json_schema_extra=CONTACT_KINDS.words_in_schema)] = None
+    """Law of contact of its wheels; that of the analysis when left out."""
     line: Annotated[Name | None, Field(examples=["left"])] = None
     """Running line of the structure that its wheels run on; the main one when left out."""
     reversed: Flag = False

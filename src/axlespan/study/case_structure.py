@@ -7,6 +7,7 @@ from typing import Annotated, Literal, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from axlespan.errors import InputError
+from axlespan.study.case_condition import DamagedZone, Temperature
 from axlespan.study.case_damping import StructuralDamping
 from axlespan.study.case_imported import MeshStructure
 from axlespan.study.case_matrices import MatricesStructure
@@ -63,6 +64,12 @@ class SimpleSpan(Part):
     """Poisson's ratio, for the shear modulus."""
     supports: tuple[Support, ...] | None = None
     """Supports in place of the two at the ends."""
+    damage: Annotated[
+        tuple[DamagedZone, ...], Field(examples=["[{from: 10 m, to: 12 m, stiffness: 0.8}]"])
+    ] = ()
+    """Zones that have lost stiffness."""
+    temperature: Annotated[Temperature | None, Field(examples=["{value: 25, coefficient: -0.003}"])] = None
+    """Temperature that the stiffness follows; no effect when left out."""
     track: Annotated[Track | None, Field(examples=["{kind: ballasted, preset: zhai-2004}"])] = None
     """Track on the bridge, before and behind it; wheels run on the deck when left out."""
 
@@ -121,6 +128,12 @@ class _Spans(BeamProperties):
     """Sections that vary along the deck."""
     damping: StructuralDamping | None = None
     """Structural damping; none when left out."""
+    damage: Annotated[
+        tuple[DamagedZone, ...], Field(examples=["[{from: 10 m, to: 12 m, stiffness: 0.8}]"])
+    ] = ()
+    """Zones that have lost stiffness."""
+    temperature: Annotated[Temperature | None, Field(examples=["{value: 25, coefficient: -0.003}"])] = None
+    """Temperature that the stiffness follows; no effect when left out."""
     track: Annotated[Track | None, Field(examples=["{kind: ballasted, preset: zhai-2004}"])] = None
     """Track on the bridge, before and behind it; wheels run on the deck when left out."""
 

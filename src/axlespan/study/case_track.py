@@ -38,7 +38,7 @@ from axlespan.units import (
 NO_PRESET = "none"
 
 _Spring = Annotated[float, Measured(STIFFNESS, above=0.0, believable=(1e6, 1e11))]
-_SupportSpacing = Annotated[float, Measured(LENGTH, above=0.0, at_most=3.0, believable=(0.2, 3.0))]
+_SupportSpacing = Annotated[float, Measured(LENGTH, above=0.0, believable=(0.2, 3.0))]
 _SleeperMass = Annotated[float, Measured(MASS, above=0.0, believable=(20.0, 2000.0))]
 _Modulus = Annotated[float, Measured(PRESSURE, above=0.0, believable=(1e6, 1e11))]
 _Damping = Annotated[float, Measured(DAMPING_PER_LENGTH, at_least=0.0)]
@@ -182,18 +182,13 @@ class SlabTrack(_AnyTrack):
     """Length of slabs with joints; one slab when left out."""
 
 
-KINDS = Kinds("track", ("ballasted", "slab"), "{kind: ballasted, preset: zhai-2004}")
-
-
-def _word_or_mapping(raw: Any) -> Any:
-    """``track: ballasted`` stands for the usual one."""
-    return KINDS.checked({"kind": raw} if isinstance(raw, str) and raw in KINDS.names else raw)
-
+_NAMES = ("ballasted", "slab")
+KINDS = Kinds("track", _NAMES, "{kind: ballasted, preset: zhai-2004}", words_alone=_NAMES)
 
 Track = Annotated[
     Annotated[BallastedTrack, tag("ballasted")] | Annotated[SlabTrack, tag("slab")],
     KINDS.discriminator(),
-    BeforeValidator(_word_or_mapping),
+    BeforeValidator(KINDS.checked),
 ]
 
 

@@ -74,9 +74,9 @@ class AxleLoads(Placed):
     """Forces that move over the structure, without masses: one vehicle is one group of axles."""
 
     vehicle: Literal["axle-loads"]
-    loads: (
-        Annotated[tuple[float, ...], Several(AXLE_LOAD, example="[170 kN, 170 kN]", alone=True)] | None
-    ) = None
+    loads: Annotated[tuple[float, ...], Several(AXLE_LOAD, example="[170 kN, 170 kN]", alone=True)] | None = (
+        None
+    )
     """Weight on each axle, positive; one value holds for all axles."""
     positions: Annotated[tuple[float, ...], Several(DISTANCE, "[0 m, 3 m]", increasing=True)] | None = None
     """Distance of each axle behind the first."""
@@ -109,7 +109,9 @@ class AxleLoads(Placed):
                     raise InputError("says again what the file says", field=name, fix="Keep one of the two")
             return self
         if self.loads is None:
-            raise InputError("is missing", field="loads", fix="Add loads: [170 kN, 170 kN], or file: axles.csv")
+            raise InputError(
+                "is missing", field="loads", fix="Add loads: [170 kN, 170 kN], or file: axles.csv"
+            )
         if self.positions is not None and self.spacings is not None:
             raise InputError("says again what positions say", field="spacings", fix="Keep one of the two")
         if self.positions is not None and self.positions[0] != 0.0:

@@ -1,6 +1,6 @@
 """Vehicles and trains: systems with contact points, and how they follow each other."""
 
-from axlespan.vehicles import library
+from axlespan.vehicles import library, load_trains
 from axlespan.vehicles.loads import BodyLoad
 from axlespan.vehicles.multibody import multibody
 from axlespan.vehicles.parts import Body, Hinge, Suspension, Wheel
@@ -20,6 +20,7 @@ __all__ = [
     "Wheel",
     "axle_loads",
     "library",
+    "load_trains",
     "multibody",
     "rigid_body",
     "rigid_mass",

@@ -208,7 +208,7 @@ class Vehicle:
         """The same wheels as moving forces of their static loads."""
         forces = self.static_forces(gravity)
         points = tuple(
-            replace(point, dof=None, force=float(force))
+            replace(point, dof=None, force=float(force), law=None)
             for point, force in zip(self.contacts, forces, strict=True)
         )
         return replace(self, contacts=points, system=None, bodies={}, name=f"{self.name} as axle loads")

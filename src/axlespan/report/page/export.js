@@ -26,10 +26,12 @@ function ticks(low, high, count) {
   for (let v = Math.ceil(low / step - 1e-9) * step; v <= high + 1e-9 * step; v += step) found.push(Math.abs(v) < 1e-12 * step ? 0 : v);
   return found;
 }
+// Decimals that a step of ticks needs: 2.5 needs one.
+const decimals = step => { let d = 0; while (d < 9 && Math.abs(step * 10 ** d - Math.round(step * 10 ** d)) > 1e-4 * step * 10 ** d) d++; return d; };
 const tickText = (v, all) => {
   const step = all.length > 1 ? Math.abs(all[1] - all[0]) : Math.abs(v) || 1;
   if (Math.abs(v) >= 1e6 || (v !== 0 && step < 1e-5)) return v.toExponential(1).replace(/-/g, "−");
-  return v.toFixed(Math.max(0, Math.min(8, -Math.floor(Math.log10(step) + 1e-9)))).replace("-", "−");
+  return v.toFixed(decimals(step)).replace("-", "−");
 };
 
 // A plot as SVG: curves {name, color, dash, x, y}, inside ranges, with axes and a legend.

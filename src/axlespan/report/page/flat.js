@@ -17,9 +17,9 @@ class FlatView {
   // Positions at the left and right edge.
   window_() {
     const { scene, state } = this, [a, b] = scene.ends, L = b - a, head = scene.head();
-    const train = Math.max(...scene.units.map(u => u.rear));
-    if (state.view === "follow") { const half = Math.min(0.75 * L, Math.max(20, 0.3 * L)); return [head - 1.2 * half, head + 0.8 * half]; }
-    if (state.view === "train") { const half = 0.55 * Math.max(train, 0.4 * L); return [head - 0.5 * train - half, head - 0.5 * train + half]; }
+    const train = Math.max(...scene.units.filter(u => u.train === 0).map(u => u.rear)), way = scene.trains[0].way;
+    if (state.view === "follow") { const half = Math.min(0.75 * L, Math.max(20, 0.3 * L)); return [head - (1 + 0.2 * way) * half, head + (1 - 0.2 * way) * half]; }
+    if (state.view === "train") { const half = 0.55 * Math.max(train, 0.4 * L); const middle = head - 0.5 * way * train; return [middle - half, middle + half]; }
     return [a - 0.2 * L, b + 0.2 * L];
   }
 
@@ -47,10 +47,11 @@ class FlatView {
       top.forEach(([x, y], i) => i ? ctx.lineTo(x, y) : ctx.moveTo(x, y));
       for (let i = n; i >= 0; i--) ctx.lineTo(top[i][0], top[i][1] + thick);
       ctx.closePath(); ctx.fillStyle = color("--deck"); ctx.fill(); ctx.strokeStyle = color("--deck-line"); ctx.lineWidth = 1.2; ctx.stroke();
-      ctx.strokeStyle = color("--rail"); ctx.lineWidth = 2.4; ctx.beginPath(); top.forEach(([x, y], i) => i ? ctx.lineTo(x, y) : ctx.moveTo(x, y)); ctx.stroke();
     }
-    ctx.strokeStyle = color("--rail"); ctx.lineWidth = 2.4;
-    for (const [p, q] of [[left, a], [b, right]]) if (q > p) { ctx.beginPath(); ctx.moveTo(X(p), base); ctx.lineTo(X(q), base); ctx.stroke(); }
+    // running surface, with its unevenness
+    ctx.strokeStyle = color("--rail"); ctx.lineWidth = 2.4; ctx.beginPath();
+    for (let x = 0; x <= W; x += 2) { const s = left + x / scale; ctx.lineTo(x, Y(f * (scene.w(s) + scene.r(s)))); }
+    ctx.stroke();
     // supports
     const size = Math.min(Math.max(0.9 * scale, 8), 15);
     ctx.fillStyle = color("--deck-line");
@@ -66,12 +67,14 @@ class FlatView {
   }
 
   train(ctx, X, Y, scale, f, left, right) {
-    const { scene } = this, head = scene.head();
+    const { scene } = this;
     for (const unit of scene.units) {
-      if (head - unit.front < left || head - unit.rear > right) continue;
-      const at = unit.wheels.map(w => [X(head - w[1]), f * scene.wheel(w, head)]);
+      const ends = [scene.place(unit, unit.front), scene.place(unit, unit.rear)], way = scene.trains[unit.train].way;
+      if (Math.max(...ends) < left || Math.min(...ends) > right) continue;
+      const at = unit.wheels.map(w => [X(scene.place(unit, w[1])), f * scene.wheel(w, unit)]);
       const lowest = unit.boxes.length ? Math.min(...unit.boxes.map(b => b[3])) : 0;
-      const boxes = unit.boxes.map(([name, center, length, bottom, top, low]) => ({ name, low, x: X(head - center), z: f * (scene.dof(`${name}.z`) ?? 0), turn: f * scene.tilt(name), length, bottom, top, center }));
+      const boxes = unit.boxes.map(([name, center, length, bottom, top, low]) => ({ name, low, way, x: X(scene.place(unit, center)), z: f * (scene.dof(`${name}.z`) ?? 0), turn: f * scene.tilt(name), length, bottom, top, center }));
+      for (const b of boxes) if (!b.low) this.body(ctx, b, Y, scale);
       // suspensions: from a wheel to what stands over it
       ctx.strokeStyle = css("--soft"); ctx.lineWidth = 1.6;
       unit.wheels.forEach((w, i) => {
@@ -84,7 +87,7 @@ class FlatView {
         const above = boxes.find(c => !c.low && Math.abs(c.center - b.center) <= 0.5 * c.length);
         if (above) { const arm = b.center - above.center; ctx.beginPath(); ctx.moveTo(b.x, Y(b.z + b.top)); ctx.lineTo(b.x, Y(above.z + arm * above.turn + above.bottom)); ctx.stroke(); }
       }
-      for (const b of boxes) this.body(ctx, b, Y, scale);
+      for (const b of boxes) if (b.low) this.body(ctx, b, Y, scale);
       at.forEach(([x, z], i) => {
         const radius = Math.max(0.46 * scale, 3), y = Y(z + 0.46) + (radius > 0.46 * scale ? 0.46 * scale - radius : 0);
         ctx.fillStyle = loadColor(scene.ratio(unit.wheels[i][0])); ctx.strokeStyle = css("--wheel"); ctx.lineWidth = 1.3;
@@ -103,7 +106,7 @@ class FlatView {
     const half = 0.5 * b.length * scale, height = (b.top - b.bottom) * scale, y = Y(b.z + 0.5 * (b.top + b.bottom));
     ctx.save();
     ctx.translate(b.x, y);
-    ctx.rotate(Math.atan(b.turn));
+    ctx.rotate(b.way * Math.atan(b.turn));
     ctx.fillStyle = css(b.low ? "--bogie" : "--body"); ctx.strokeStyle = css(b.low ? "--wheel" : "--body-2"); ctx.lineWidth = 1.4;
     const r = Math.min(0.14 * height, 8);
     ctx.beginPath(); ctx.roundRect(-half, -height / 2, 2 * half, height, r); ctx.fill(); ctx.stroke();

@@ -6,7 +6,8 @@ class Scene {
   constructor(spec) {
     this.ends = spec.ends; this.units = spec.units; this.supports = spec.supports; this.line = spec.line;
     this.time = arrays(spec.t);
-    this.headAt = arrays(spec.head);
+    this.trains = spec.trains.map(t => ({ at: arrays(t.head), way: t.direction }));
+    this.profile = spec.profile ? { ...spec.profile, r: arrays(spec.profile.r) } : null;
     this.begin = this.time[0]; this.end = this.time[this.time.length - 1];
     this.lineX = spec.line ? arrays(spec.line.x) : null;
     this.lineW = spec.line ? restored(spec.line.w) : null;
@@ -25,7 +26,15 @@ class Scene {
     this.part = (this.now - this.time[this.row]) / (this.time[this.row + 1] - this.time[this.row]);
   }
   between(table, n, k) { const a = table[this.row * n + k], b = table[(this.row + 1) * n + k]; return a + this.part * (b - a); }
-  head() { return this.between(this.headAt, 1, 0); }
+  head(train = 0) { return this.between(this.trains[train].at, 1, 0); }
+  // Position of what is so far behind the head of its train.
+  place(unit, behind) { return this.head(unit.train) - this.trains[unit.train].way * behind; }
+  r(s) {
+    const p = this.profile;
+    if (!p) return 0;
+    const k = (s - p.from) / p.step, i = Math.floor(k);
+    return i < 0 || i + 1 >= p.r.length ? 0 : p.r[i] + (k - i) * (p.r[i + 1] - p.r[i]);
+  }
   dof(name) { const c = this.columns[name]; return c ? this.between(c.table, c.n, c.k) : null; }
   ratio(contact) { return this.ratioOf ? this.between(this.ratioOf, this.contacts, contact) : NaN; }
   w(s) {
@@ -35,7 +44,7 @@ class Scene {
     return (1 - f) * this.between(this.lineW, n, i) + f * this.between(this.lineW, n, i + 1);
   }
   // Vertical motion of a wheel: its own, or that of the line under it.
-  wheel([, behind, dof], head) { const z = dof ? this.dof(dof) : null; return z == null ? this.w(head - behind) : z; }
+  wheel([, behind, dof], unit) { const z = dof ? this.dof(dof) : null; if (z != null) return z; const s = this.place(unit, behind); return this.w(s) + this.r(s); }
   tilt(name) { return this.dof(`${name}.pitch`) ?? this.dof(`${name}.ry`) ?? 0; }
 }
 
@@ -50,7 +59,8 @@ function player(spec, space, parent) {
   const scene = new Scene(spec), still = matchMedia("(prefers-reduced-motion: reduce)").matches;
   const length = spec.ends[1] - spec.ends[0];
   const most = Math.max(spec.line ? spec.line.most : 0, space && space.motion ? space.motion.most : 0);
-  const natural = most > 0 ? Math.max(1, nice(0.04 * length / most)) : 1;
+  // Enlarged as far as a deflection shows well and no vehicle flies.
+  const natural = most > 0 ? Math.max(1, nice(Math.min(0.04 * length / most, spec.most > 0 ? 1.3 / spec.most : Infinity))) : 1;
   const state = { playing: false, speed: still ? 0.25 : 1, factor: natural, view: "bridge", color: "size" };
   const stage = el("div", { id: "stage", tabindex: "0", role: "img", "aria-label": "The train on the deflecting structure. Space plays and pauses, arrows step in time." });
   const play = el("button", { type: "button", id: "play", onclick: () => toggle() }, "▶ Play");

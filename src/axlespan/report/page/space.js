@@ -16,7 +16,7 @@ class SpaceView {
     this.size = size.length();
     this.camera = new THREE.PerspectiveCamera(35, 2, 0.01 * this.size, 20 * this.size);
     this.camera.up.set(0, 0, 1);
-    this.camera.position.copy(middle).add(new THREE.Vector3(-0.35, -1, 0.5).multiplyScalar(1.05 * this.size));
+    this.camera.position.copy(middle).add(new THREE.Vector3(-0.35, -1, 0.5).multiplyScalar(0.88 * this.size));
     this.controls = new THREE.OrbitControls(this.camera, this.canvas);
     this.controls.target.copy(middle);
     this.controls.update();
@@ -137,16 +137,15 @@ class SpaceView {
       else if (state.color === "down") this.legend.set("vertical displacement", `${shown(1e3 * most)} mm up`, `${shown(1e3 * most)} mm down`);
       else this.legend.set("displacement", "0", `${shown(1e3 * most)} mm`);
     }
-    const head = scene.head();
     for (const { unit, boxes, wheels } of this.units) {
       unit.boxes.forEach(([name, center, , bottom, top], i) => {
-        const p = this.at(this.spec.main, head - center);
+        const p = this.at(this.spec.main, scene.place(unit, center));
         boxes[i].position.set(p.x, p.y + this.offset(unit), p.z + f * (scene.dof(`${name}.z`) ?? 0) + 0.5 * (bottom + top));
-        boxes[i].rotation.set(0, Math.atan(f * scene.tilt(name)), p.turn, "ZYX");
+        boxes[i].rotation.set(0, scene.trains[unit.train].way * Math.atan(f * scene.tilt(name)), p.turn, "ZYX");
       });
       unit.wheels.forEach((w, i) => {
-        const p = this.at(w[3], head - w[1]);
-        wheels[i].position.set(p.x, p.y, p.z + f * scene.wheel(w, head) + 0.46);
+        const p = this.at(w[3], scene.place(unit, w[1]));
+        wheels[i].position.set(p.x, p.y, p.z + f * scene.wheel(w, unit) + 0.46);
         wheels[i].rotation.set(0, 0, p.turn);
         wheels[i].material.color.set(loadColor(scene.ratio(w[0])));
       });

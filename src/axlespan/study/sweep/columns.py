@@ -12,6 +12,7 @@ from axlespan.study.sweep.axes import Values
 from axlespan.study.sweep.peaks import COLUMNS, OF_SENSORS
 from axlespan.study.sweep.scenarios import Scenarios
 from axlespan.study.sweep.spec import Spec
+from axlespan.study.sweep.verdicts import verdict_columns
 
 # Values of a path that are looked at.
 _LOOKED_AT = 2000
@@ -22,6 +23,7 @@ def columns_of(spec: Spec, scenarios: Scenarios, case: Case) -> dict[str, str]:
     result = {"id": "int"}
     result |= {part.path: _kind(part) for part in scenarios.parts}
     result |= {name: kind for name, kind in COLUMNS.items() if name != "id"}
+    result |= verdict_columns(case)
     for name in case.output.sensors:
         result |= {f"sensor.{name}.{quantity}": "number" for quantity in OF_SENSORS}
     if spec.kept is not None:

@@ -10,7 +10,7 @@ import math
 import time
 from collections import OrderedDict
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
@@ -19,10 +19,12 @@ import numpy.typing as npt
 
 import axlespan
 from axlespan.errors import AxlespanError, InputError
-from axlespan.interaction.crossing import Crossing
+from axlespan.interaction.crossing import Crossing, Run
 from axlespan.interaction.plan import Plan
 from axlespan.interaction.result import Result
 from axlespan.interaction.simulate import run_plans
+from axlespan.standards import assess
+from axlespan.standards.bridge_facts import BridgeFacts, bridge_facts
 from axlespan.study.build import BuiltCase, build
 from axlespan.study.build_checks import require_stable
 from axlespan.study.build_structures import structure_of
@@ -35,6 +37,7 @@ from axlespan.study.sweep.peaks import COMPLETED, FAILED, INVALID, peaks_of
 from axlespan.study.sweep.recipe import Recipe, digest
 from axlespan.study.sweep.shards import Histories, histories_of
 from axlespan.study.sweep.validation import case_of
+from axlespan.study.sweep.verdicts import verdict_row
 from axlespan.vehicles import Train
 
 FloatArray = npt.NDArray[np.float64]
@@ -44,8 +47,8 @@ T = TypeVar("T")
 _STRUCTURES: Final = 8
 _TRAINS: Final = 64
 
-# No passage takes longer [s]: a train that stands never passes.
-_LONGEST: Final = 1e5
+# Steps of a scenario at which its energy is balanced: a few of each are many of a study.
+_ENERGY_SAMPLES: Final = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,6 +102,7 @@ class Workshop:
             )
         self.recipe = recipe
         self._structures, self._trains = _Kept(_STRUCTURES), _Kept(_TRAINS)
+        self._bridges = _Kept(_STRUCTURES)  # facts for their verdicts
 
     # --- building ------------------------------------------------------------------------------
 
@@ -116,7 +120,7 @@ class Workshop:
         made: BuiltStructure = self._structures.get(
             _key(data["structure"]), lambda: self._structure(loaded)
         )
-        key = (_key([data["train"], case.analysis.gravity]), id(made))
+        key = (_key([data["train"], case.analysis.gravity, case.analysis.vehicles]), id(made))
         return self._built(loaded, made, key)
 
     def _structure(self, loaded: LoadedCase) -> BuiltStructure:
@@ -129,6 +133,8 @@ class Workshop:
         train: Train | None = self._trains.values.get(key)
         lasting = None if self.recipe.passage is None else self._steps(loaded.case)
         built = build(loaded, made=made, train=train, lasting=lasting)
+        settings = replace(built.plan.settings, energy_samples=_ENERGY_SAMPLES)
+        built = replace(built, plan=replace(built.plan, settings=settings))
         if train is None:
             self._trains.get(key, lambda: built.crossing.train)
         return built
@@ -188,7 +194,25 @@ class Workshop:
         row: dict[str, Any] = {"seconds": seconds, "steps": built.plan.settings.steps}
         if result is None or result.outcome.code != "completed":
             return {**row, "outcome": FAILED, "reason": reason or (result.outcome.message if result else "")}
-        return {**row, "outcome": COMPLETED, "reason": "", **peaks_of(result, built.plan)}
+        return {
+            **row,
+            "outcome": COMPLETED,
+            "reason": "",
+            **peaks_of(result, built.plan),
+            **self._verdicts(result, built),
+        }
+
+    def _verdicts(self, result: Result, built: BuiltCase) -> dict[str, Any]:
+        """Verdicts by the rules that the case asks for; facts of a bridge are the same for all its crossings."""
+        asked = built.loaded.case.assessment
+        if asked is None:
+            return {}
+        wanted, structure = asked.wanted(), built.crossing.structure
+        key = (id(structure), repr(wanted))
+        kept: tuple[Any, BridgeFacts] = self._bridges.get(
+            key, lambda: (structure, bridge_facts(structure, wanted))
+        )
+        return verdict_row(assess(result, built.crossing, wanted, facts=kept[1]))
 
     def _records(self, results: Mapping[int, tuple[Result, Plan]]) -> Histories | None:
         recording = self.recipe.recording
@@ -229,29 +253,29 @@ def passage(crossing: Crossing) -> float:
         reach = float(run.train.offsets.max())
         goal = max(line.stop for line in lines) if run.course.direction > 0 else min(line.start for line in lines)
 
-        def left(t: float, run: Any = run, reach: float = reach, goal: float = goal) -> float:
-            tail = float(run.course.head(np.array([t]))[0]) - run.course.direction * reach
-            return float(run.course.direction * (tail - goal))
+
+        def left(times: FloatArray, run: Run = run, reach: float = reach, goal: float = goal) -> FloatArray:
+            tail = run.course.head(times) - run.course.direction * reach
+            return np.asarray(run.course.direction * (tail - goal))
 
         latest = max(latest, _root(left))
     return latest
 
 
-def _root(rising: Callable[[float], float]) -> float:
-    """Where a function that never falls reaches zero."""
-    if rising(0.0) >= 0.0:
+def _root(rising: Callable[[FloatArray], FloatArray]) -> float:
+    """Where a function that never falls reaches zero: bracketed by powers of 2, then divided by hundreds."""
+    times = np.concatenate([[0.0], np.exp2(np.arange(-10.0, 18.0))])
+    reached = rising(times) >= 0.0
+    if reached[0]:
         return 0.0
-    high = 1.0
-    while rising(high) < 0.0:
-        high *= 2.0
-        if high > _LONGEST:
-            raise InputError("never brings the last wheel off the structure", field="crossing.speed")
-    low = 0.0
-    for _ in range(200):
-        middle = 0.5 * (low + high)
-        if middle in (low, high):
-            break
-        low, high = (low, middle) if rising(middle) >= 0.0 else (middle, high)
+    if not reached.any():
+        raise InputError("never brings the last wheel off the structure", field="crossing.speed")
+    first = int(np.argmax(reached))
+    low, high = float(times[first - 1]), float(times[first])
+    for _ in range(7):
+        times = np.linspace(low, high, 129)
+        first = max(1, int(np.argmax(rising(times) >= 0.0)))
+        low, high = float(times[first - 1]), float(times[first])
     return high
 
 
