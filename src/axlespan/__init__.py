@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from axlespan.model.model import Model
     from axlespan.model.system import System
     from axlespan.running.structure import Structure
+    from axlespan.study.sweep import Study
     from axlespan.vehicles.train import Train
     from axlespan.vehicles.vehicle import Vehicle
 
@@ -41,6 +42,7 @@ _HOMES = {
     "Rayleigh": "model.damping",
     "Result": "interaction.result",
     "Structure": "running.structure",
+    "Study": "study.sweep",
     "System": "model.system",
     "Train": "vehicles.train",
     "Vehicle": "vehicles.vehicle",
@@ -66,6 +68,7 @@ __all__ = [
     "Rayleigh",
     "Result",
     "Structure",
+    "Study",
     "System",
     "Train",
     "Vehicle",

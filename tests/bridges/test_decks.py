@@ -10,8 +10,8 @@ from axlespan.errors import InputError
 from axlespan.linalg.eigen import lowest_modes
 from axlespan.linalg.factor import factorize
 
-E, I, M = 34e9, 0.8, 12e3
-BEAM = dict(youngs_modulus=E, second_moment=I, mass_per_length=M)
+E, INERTIA, M = 34e9, 0.8, 12e3
+BEAM = dict(youngs_modulus=E, second_moment=INERTIA, mass_per_length=M)
 
 
 def under(structure, forces):
@@ -44,7 +44,9 @@ class TestSimpleSpans:
         decks = simple_spans(spans=[20.0, 30.0], elements=20, **BEAM)
         u, load = under(decks, {10.0: 1e5, 35.0: 1e5})
         for middle, span in ((10.0, 20.0), (35.0, 30.0)):
-            assert deflection(decks, u, middle) == pytest.approx(-1e5 * span**3 / (48 * E * I), rel=1e-9)
+            assert deflection(decks, u, middle) == pytest.approx(
+                -1e5 * span**3 / (48 * E * INERTIA), rel=1e-9
+            )
         found = reactions(decks, u, load)
         assert found == pytest.approx(
             {"span1.left.z": 5e4, "span1.right.z": 5e4, "span2.left.z": 5e4, "span2.right.z": 5e4}, rel=1e-9
@@ -54,7 +56,7 @@ class TestSimpleSpans:
         decks = simple_spans(spans=[20.0, 30.0], elements=20, **BEAM)
         blocks = decks.system.partition
         found = lowest_modes(blocks.K_FF, blocks.M_FF, 2).frequencies
-        exact = [np.pi / (2 * span**2) * np.sqrt(E * I / M) for span in (30.0, 20.0)]
+        exact = [np.pi / (2 * span**2) * np.sqrt(E * INERTIA / M) for span in (30.0, 20.0)]
         np.testing.assert_allclose(found, exact, rtol=1e-5)
 
     def test_bearings_that_give_way(self):
@@ -62,7 +64,7 @@ class TestSimpleSpans:
             spans=[20.0, 20.0], elements=10, bearing_stiffness=2e8, bearing_damping=1e5, **BEAM
         )
         u, _ = under(decks, {10.0: 1e5})
-        exact = -1e5 * 20.0**3 / (48 * E * I) - 0.5e5 / 2e8
+        exact = -1e5 * 20.0**3 / (48 * E * INERTIA) - 0.5e5 / 2e8
         assert deflection(decks, u, 10.0) == pytest.approx(exact, rel=1e-9)
         assert decks.system.damping.sum() == pytest.approx(0.0, abs=1e-6)
         assert decks.system.damping.diagonal().max() == 1e5
@@ -81,10 +83,12 @@ class TestBearings:
         bridge = simple_span(length=length, elements=40, supports=springs, **BEAM)
 
         def equation(b):
-            return E * I * b**3 * (np.tan(b * length / 2) + np.tanh(b * length / 2)) - 2 * stiffness
+            return E * INERTIA * b**3 * (np.tan(b * length / 2) + np.tanh(b * length / 2)) - 2 * stiffness
 
         b = brentq(equation, 1e-6, np.pi / length * (1 - 1e-9))
-        assert first_frequency(bridge) == pytest.approx(b**2 * np.sqrt(E * I / M) / (2 * np.pi), rel=1e-5)
+        assert first_frequency(bridge) == pytest.approx(
+            b**2 * np.sqrt(E * INERTIA / M) / (2 * np.pi), rel=1e-5
+        )
 
     def test_rotational_springs_of_an_integral_abutment(self):
         """Equal springs c at both ends, force in the middle: M_end = P L / 8 / (1 + 2 EI / (c L))."""
@@ -92,10 +96,10 @@ class TestBearings:
         ends = [SupportAt(x, fixed=("z",), stiffness={"ry": spring}, name=f"a{x:g}") for x in (0.0, length)]
         bridge = simple_span(length=length, elements=20, supports=ends, **BEAM)
         u, load = under(bridge, {length / 2: force})
-        end = force * length / 8.0 / (1.0 + 2.0 * E * I / (spring * length))
+        end = force * length / 8.0 / (1.0 + 2.0 * E * INERTIA / (spring * length))
         assert abs(reactions(bridge, u, load)["a0.ry"]) == pytest.approx(end, rel=1e-9)
         assert deflection(bridge, u, 10.0) == pytest.approx(
-            -force * length**3 / (48 * E * I) + end * length**2 / (8 * E * I), rel=1e-9
+            -force * length**3 / (48 * E * INERTIA) + end * length**2 / (8 * E * INERTIA), rel=1e-9
         )
 
 
@@ -172,7 +176,7 @@ class TestFrames:
     """Kleinlogel's portal frames, k = I_beam h / (I_column L); bars that don't shorten."""
 
     L, H, P, COLUMN = 20.0, 8.0, 3e5, 0.4
-    K = I * H / (COLUMN * L)
+    K = INERTIA * H / (COLUMN * L)
 
     def portal(self, **column):
         columns = [Column(x, self.H, E, self.COLUMN, 1e6, **column) for x in (0.0, self.L)]
@@ -199,7 +203,7 @@ class TestFrames:
         portal = self.portal(top="hinged")
         u, load = under(portal, {self.L / 2: self.P})
         assert deflection(portal, u, self.L / 2) == pytest.approx(
-            -self.P * self.L**3 / (48 * E * I), rel=1e-4
+            -self.P * self.L**3 / (48 * E * INERTIA), rel=1e-4
         )
         assert abs(reactions(portal, u, load)["column1.x"]) < 1e-6 * self.P
 
@@ -212,7 +216,7 @@ class TestFrames:
         assert thrusts[0] < thrusts[1] < thrusts[2]
 
     def test_sway_frequency_of_a_stiff_deck_on_two_columns(self):
-        """Two columns clamped at both ends: k = 24 E I / h^3, the deck's mass with 26/35 of half the columns' each."""
+        """Two columns clamped at both ends: k = 24 E INERTIA / h^3, the deck's mass with 26/35 of half the columns' each."""
         deck = dict(youngs_modulus=34e12, second_moment=50.0, mass_per_length=M)
         columns = [Column(x, self.H, E, 0.05, 4.0, 2e3) for x in (0.0, self.L)]
         bridge = frame(spans=[self.L], area=50.0, elements=10, columns=columns, **deck)

@@ -60,6 +60,17 @@ def test_coarse_records_say_what_to_write(run):
     assert "records are 0.03 s apart" in summary["verdicts"][0]["reason"]
 
 
+def test_the_result_is_kept_when_rules_break(run, monkeypatch, tmp_path):
+    def broken(*arguments):
+        raise ZeroDivisionError("a rule divides by zero")
+
+    monkeypatch.setattr("axlespan.cli.run.assess", broken)
+    answer, summary = run(("output:", f"{WANTED}output:"))
+    assert answer.code == 0 and summary["verdicts"] == []
+    assert "warning: the run could not be assessed: a rule divides by zero" in answer.err
+    assert (tmp_path / "out" / "result.nc").exists()
+
+
 def test_no_line_no_deck(run):
     _, summary = run(("output:", f"{WANTED}output:\n  line: 0"))
     reasons = [verdict["reason"] for verdict in summary["verdicts"][:2]]

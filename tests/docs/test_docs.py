@@ -77,6 +77,26 @@ def test_shell_commands_of_the_readme(tmp_path):
     assert 1e3 * summary["sensors"]["midspan"]["displacement_min_m"] == pytest.approx(-2.4069, abs=5e-5)
 
 
+@pytest.mark.slow
+def test_the_tutorial_works_as_written(tmp_path):
+    """All its commands, in order, in one folder, with the files that it shows."""
+    page = ROOT / "docs" / "tutorial.md"
+    (study,) = [block for block in blocks(page, "yaml") if block.startswith("base:")]
+    (tmp_path / "study.yaml").write_text(study, encoding="utf-8")
+    for line in (line for block in blocks(page, "sh") for line in block.splitlines() if line):
+        done = command(line, tmp_path)
+        assert done.returncode == 0, f"{line}\n{done.stderr}"
+    assert (tmp_path / "bridge" / "report.html").stat().st_size > 10_000
+    summary = json.loads((tmp_path / "bridge" / "summary.json").read_text(encoding="utf-8"))
+    outcomes = {verdict["outcome"] for verdict in summary["verdicts"]}
+    assert outcomes & {"pass", "fail"}
+    assert "not assessed" in outcomes  # forces have no car bodies
+    # With vehicles in place of forces, by the edit that it describes.
+    text = (tmp_path / "bridge.yaml").read_text(encoding="utf-8")
+    (tmp_path / "vehicles.yaml").write_text(text.replace("vehicle: hslm-a5", "vehicle: ice3"), encoding="utf-8")
+    assert command("axlespan check vehicles.yaml", tmp_path).returncode == 0
+
+
 def test_targets_of_make_exist():
     rules = re.findall(r"^([a-z]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), flags=re.MULTILINE)
     for page in PAGES:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from axlespan.plot.thinning import band, band_over, thinned
+from axlespan.io.thinning import band, band_over, thinned
 
 
 @pytest.mark.parametrize("n", [1, 399, 400, 401, 4003, 100_000])

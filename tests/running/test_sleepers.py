@@ -6,16 +6,16 @@ import pytest
 import axlespan as asp
 from axlespan.errors import InputError
 
-E, I, LENGTH = 34e9, 0.8, 12.0
+E, INERTIA, LENGTH = 34e9, 0.8, 12.0
 BRIDGE = asp.bridges.simple_span(
-    length=LENGTH, youngs_modulus=E, second_moment=I, mass_per_length=9e3, elements=16
+    length=LENGTH, youngs_modulus=E, second_moment=INERTIA, mass_per_length=9e3, elements=16
 )
 
 
 def at_midspan(a):
     """Deflection at midspan per unit force at a, zero off the span."""
     b = np.minimum(a, LENGTH - a)
-    w = b * (3 * LENGTH**2 - 4 * b**2) / (48 * E * I)
+    w = b * (3 * LENGTH**2 - 4 * b**2) / (48 * E * INERTIA)
     return np.where(b > 0.0, w, 0.0)
 
 

@@ -1,16 +1,21 @@
 """From results to verdicts: quantities computed again in the test, and what is not there is not assessed."""
 
 import dataclasses
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import axlespan as asp
 from axlespan.bridges import SupportAt
+from axlespan.model.motions import Constant
 from axlespan.reference import point_load_deflection
 from axlespan.standards import CHECKS, FROM_MEMORY, Assessment, BridgeFacts, assess, bridge_facts, overall
 from axlespan.standards.dynamic_factors import phi2, phi_double_dash
 from axlespan.standards.filters import low_pass, up_to
+from axlespan.standards.lm71 import InfluenceLine, lm71_effect
+from axlespan.study.build import build
+from axlespan.study.loader import load_case
 
 SPAN, EI, MASS = 30.0, 34e9 * 1.5, 12e3
 BRIDGE = {
@@ -164,6 +169,7 @@ def test_what_the_run_does_not_have_is_not_assessed(crossing):
         "deck_acceleration": "the deck was not recorded",
         "deflection": "the deck was not recorded",
         "dynamic_effect": "the deck was not recorded",
+        "dynamic_moment": "the envelope of moments was not recorded",
         "end_rotation": "the deck was not recorded",
         "end_offset": "the deck was not recorded",
         "twist": "lines called left and right",
@@ -199,6 +205,26 @@ def test_moving_forces_have_no_unloading_and_no_coaches():
     # 20 m: 1 % and 0.296 % for the moving forces
     assert found["damping"].limit == pytest.approx(0.01296, abs=1e-5)
     assert found["dynamic_effect"].outcome == "pass"
+
+
+def test_critical_speeds(found, crossing):
+    f1, f2, _ = bridge_facts(crossing.structure, LINE).frequencies
+    verdict = found["critical_speed"]
+    near = [f * 12.0 / i for f in (f1, f2) for i in (1, 2, 3, 4)]
+    assert verdict.value == pytest.approx(min(near, key=lambda speed: abs(speed - 60.0)))
+    assert "with d = 12 m; the run has 216 km/h" in verdict.note
+    assert f"{3.6 * f2 * 12.0 / 3.0:.0f} (f2 d/3)" in verdict.note  # 207 km/h
+
+
+def test_solids_have_no_supports_on_their_line():
+    example = load_case(Path(asp.__file__).parent / "examples" / "solid-beam-coarse.yaml")
+    structure = build(example).crossing.structure
+    facts = bridge_facts(structure, Assessment())
+    assert facts.spans == () and facts.missing == "the spans are not known: give spans"
+    assert len(facts.frequencies) == 3
+    assert (
+        bridge_facts(structure, Assessment(spans=(structure.length,))).determinant_length == structure.length
+    )
 
 
 def test_wheels_that_leave_the_rail(result, crossing):
@@ -343,3 +369,34 @@ def test_a_pitching_body_counts_over_its_axles():
     largest = max(over, key=lambda name: np.abs(over[name]).max())
     assert verdict.value == pytest.approx(np.abs(over[largest]).max())
     assert verdict.where == f"1.body, {largest}" and largest != "center"
+
+
+def test_moments_against_load_model_71():
+    """A slow axle: the moments of the run are static ones, P x (L - x) / L; with LM71 by hand at the worst section."""
+    force = asp.Train.of(asp.vehicles.axle_loads(loads=[4e5], positions=[0.0]))
+    bridge = asp.bridges.simple_span(**BRIDGE)
+    crossing = asp.Crossing(bridge, force, speed=2.0)
+    result = asp.simulate(crossing, time_step=0.02, steps=760, envelopes=["moment"], line_points=3)
+    asked = Assessment(line_speed=250 / 3.6, checks=("dynamic_moment",))
+    (verdict,) = assess(result, crossing, asked)
+    x = np.linspace(0.0, SPAN, 31)
+    run = 4e5 * x * (SPAN - x) / SPAN
+    assert result.envelopes.of("moment").largest == pytest.approx(run, rel=0.03, abs=1e5)
+    line = np.linspace(0.0, SPAN, 6001)
+    model = [
+        lm71_effect(InfluenceLine(line, np.minimum(line, at) * (SPAN - np.maximum(line, at)) / SPAN))
+        for at in x
+    ]
+    inside = np.array(model) > 0.2 * max(model)
+    second = 0.5 * phi_double_dash(2.0, SPAN, bridge_facts(bridge, LINE).first_frequency)
+    ratio = (result.envelopes.of("moment").largest + second * run)[inside] / (
+        phi2(SPAN) * np.array(model)[inside]
+    )
+    assert verdict.value == pytest.approx(ratio.max(), rel=1e-3)
+    assert verdict.where == f"{x[inside][ratio.argmax()]:.4g} m"
+    settled = [SupportAt(0.0, ("z",), motion={"z": Constant(-1e-3)}), SupportAt(SPAN, ("z",))]
+    moved = dataclasses.replace(
+        crossing, structure=asp.bridges.simple_span(**(BRIDGE | {"supports": settled}))
+    )
+    (verdict,) = assess(result, moved, asked)
+    assert "moved supports" in verdict.reason

@@ -6,7 +6,7 @@ import pytest
 import axlespan as asp
 from axlespan.errors import InputError
 from axlespan.reference import point_load_deflection
-from axlespan.standards.influence import deflection_lines
+from axlespan.standards.influence import deflection_lines, moment_lines
 from axlespan.standards.lm71 import InfluenceLine, lm71_effect, sw0_effect, train_effect
 
 SPAN = 20.0
@@ -92,3 +92,32 @@ def test_deflection_under_load_model_71_against_a_sum_of_point_loads():
 def test_positions_must_increase():
     with pytest.raises(InputError, match="must have positions that increase"):
         InfluenceLine(np.array([0.0, 0.0]), np.zeros(2))
+
+
+@pytest.mark.parametrize("at", [0.3, 7.0, 10.0])
+def test_moment_lines_of_a_simple_beam(at):
+    """A triangle with s (L - s) / L at the section, inside elements and at nodes."""
+    bridge = asp.bridges.simple_span(
+        length=SPAN, youngs_modulus=30e9, second_moment=2.0, mass_per_length=1e4, elements=10
+    )
+    (line,) = moment_lines(bridge, np.array([at]))
+    exact = np.minimum(line.positions, at) * (SPAN - np.maximum(line.positions, at)) / SPAN
+    assert line.ordinates == pytest.approx(exact, abs=1e-9)
+
+
+def test_moment_of_load_model_71_on_a_structure():
+    bridge = asp.bridges.simple_span(
+        length=SPAN, youngs_modulus=30e9, second_moment=2.0, mass_per_length=1e4, elements=10
+    )
+    (line,) = moment_lines(bridge, np.array([10.0]))
+    assert lm71_effect(line) == pytest.approx(6075.2e3, rel=1e-6)
+
+
+def test_hogging_over_the_middle_support():
+    """Two equal spans: M = -P a (L² - a²) / 4 L² over the middle support for a force at a in one span."""
+    beam = asp.bridges.continuous_beam(
+        spans=[SPAN, SPAN], youngs_modulus=30e9, second_moment=2.0, mass_per_length=1e4, elements=10
+    )
+    (line,) = moment_lines(beam, np.array([SPAN]))
+    a = np.where(line.positions <= SPAN, line.positions, 2.0 * SPAN - line.positions)
+    assert line.ordinates == pytest.approx(-a * (SPAN**2 - a**2) / (4.0 * SPAN**2), abs=1e-9)

@@ -8,7 +8,7 @@ import pytest
 
 from axlespan.errors import InputError
 from axlespan.io.strict_json import to_json
-from axlespan.standards import CHECKS, FROM_MEMORY, Assessment, Verdict, overall, worst
+from axlespan.standards import CHECKS, FROM_MEMORY, Assessment, Verdict, envelope, overall, worst
 from axlespan.standards.limits import LIMITS, largest_wheel_force, limit_of
 from axlespan.standards.verdict import judged, not_assessed
 
@@ -104,6 +104,15 @@ def test_the_worst_of_several_runs():
         worst([deck(1.0), not_assessed("twist", "c", "q", "r")])
 
 
+def test_the_envelope_of_a_sweep():
+    missing = not_assessed("twist", "c", "q", "r")
+    runs = [(deck(1.0), missing), (deck(4.0), missing), (deck(2.0),)]
+    found = envelope(runs)
+    assert [verdict.check for verdict in found] == ["deck_acceleration", "twist"]
+    assert found[0].value == 4.0 and overall(found) == "fail"
+    assert envelope([]) == ()
+
+
 @pytest.mark.parametrize(
     ("name", "facts", "value"),
     [
@@ -179,5 +188,5 @@ def test_an_assessment_is_checked(wrong, field):
 
 
 def test_every_check_has_a_name_of_its_own():
-    assert len(set(CHECKS)) == len(CHECKS) == 18
+    assert len(set(CHECKS)) == len(CHECKS) == 20
     assert Verdict("twist", "c", "q", "pass").as_dict()["check"] == "twist"

@@ -36,7 +36,8 @@ class TestTrack:
         assert "to be checked: shear_damping, shear_stiffness" in text
 
     def test_of_values(self, loaded):
-        track = "{kind: ballasted, preset: railfe, rail: 54E1, sleeper_spacing: 0.5 m, pad_stiffness: 120 MN/m, approach: 30 m, exit: 28 m}"
+        values = "preset: railfe, rail: 54E1, sleeper_spacing: 0.5 m, pad_stiffness: 120 MN/m"
+        track = f"{{kind: ballasted, {values}, approach: 30 m, exit: 28 m}}"
         structure = build(loaded(*tracked(track))).crossing.structure
         assert structure.line().start == -30.0
         assert structure.line().stop == pytest.approx(53.0)
@@ -108,7 +109,8 @@ class TestSleepers:
 
 class TestFrames:
     def test_a_portal_of_the_case_file(self, loaded):
-        columns = "[{at: 0 m, height: 8 m, youngs_modulus: 34 GPa, second_moment: 0.2 m^4, area: 2 m^2}, {at: 25 m, height: 8 m, youngs_modulus: 34 GPa, second_moment: 0.2 m^4, area: 2 m^2, base: pinned, mass_per_length: 5 t/m}]"
+        column = "height: 8 m, youngs_modulus: 34 GPa, second_moment: 0.2 m^4, area: 2 m^2"
+        columns = f"[{{at: 0 m, {column}}}, {{at: 25 m, {column}, base: pinned, mass_per_length: 5 t/m}}]"
         built = build(
             loaded(
                 ("simple-span", "frame"),

@@ -11,7 +11,7 @@ from axlespan.study.build import build
 
 PAGE = (Path(__file__).parents[2] / "docs" / "trains.md").read_text(encoding="utf-8")
 BASE = """\
-structure: {kind: simple-span, length: 25 m, youngs_modulus: 34 GPa, second_moment: 0.9 m^4, mass_per_length: 12 t/m, elements: 20}
+structure: {kind: simple-span, length: 25 m, youngs_modulus: 34 GPa, second_moment: 0.9 m^4, mass_per_length: 12 t/m, elements: 9}
 train: [{vehicle: hslm-a1}]
 crossing: {speed: 100 km/h}
 analysis: {time_step: 1 ms, duration: 7 s}

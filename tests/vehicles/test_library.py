@@ -216,12 +216,19 @@ class TestOwnFiles:
             ("note: slender", "note: slender, long", r"Put a text that has a comma in quotes"),
             ("positions: [0 m, 9 m]", "positions: [1 m, 9 m]", "must have its first wheel at 0"),
             ("[[body, wheel1], [body, wheel2]]", "[body]", "must be two names, or a list of such pairs"),
+            ("pitch: 12 m", "notes: &n [*n]", "is nested too deeply|found undefined alias"),
+            ("pitch: 12 m", "<<: 3", r"wagon\.yaml:6:1: <<: must be followed by one alias of a mapping"),
             ("title: My wagon", "title: [", r"wagon\.yaml:2:1: is no YAML|wagon\.yaml:\d+:\d+: is no YAML"),
         ],
     )  # fmt: skip
     def test_errors(self, wagon, old, new, message):
         with pytest.raises(InputError, match=message):
             library.load(wagon((old, new)))
+
+    def test_aliases_that_grow_without_end(self, wagon):
+        lines = "".join(f"n{i}: &n{i} [{', '.join([f'*n{i - 1}'] * 10)}]\n" for i in range(1, 9))
+        with pytest.raises(InputError, match="has too many values"):
+            library.load(wagon(("pitch: 12 m\n", f"n0: &n0 [x]\n{lines}")))
 
     def test_files_that_are_not_there(self, tmp_path):
         with pytest.raises(InputError, match=r"none\.yaml: no such file"):

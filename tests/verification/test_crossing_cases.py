@@ -3,10 +3,10 @@
 import pytest
 
 from axlespan.reference import midspan_amplification
-from axlespan.verification import crossings, forces, wheels
+from axlespan.verification import crossings, forces, trains, wheels
 from axlespan.verification.forces import _AMPLIFICATION
 
-CASES = [*crossings.CASES, *forces.CASES, *wheels.CASES]
+CASES = [*crossings.CASES, *forces.CASES, *trains.CASES, *wheels.CASES]
 
 
 @pytest.mark.parametrize("case", [c for c in CASES if not c.long], ids=lambda c: c.name)

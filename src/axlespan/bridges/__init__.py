@@ -6,7 +6,8 @@ from axlespan.bridges.multi_span import simple_spans
 from axlespan.bridges.rails import RAILS, Rail
 from axlespan.bridges.spans import SupportAt, continuous_beam, simple_span
 from axlespan.bridges.stations import Station
-from axlespan.bridges.track import Layer, Track, Zone, ballasted_track, slab_track
+from axlespan.bridges.track import Layer, Track, Zone
+from axlespan.bridges.track_builders import ballasted_track, slab_track
 from axlespan.bridges.track_layout import least_approach, usual_approach
 from axlespan.bridges.track_presets import PRESETS, TrackPreset
 from axlespan.bridges.with_track import track_on_ground, with_track

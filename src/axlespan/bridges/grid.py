@@ -70,6 +70,7 @@ def beam_grid(
     lines: Mapping[str, float] | None = None,
     track_centers: Sequence[float] | None = None,
     bearing_stiffness: float | None = None,
+    bearing_damping: float | None = None,
     damping: Damping | None = None,
     name: str = "beam grid",
 ) -> Structure:
@@ -100,8 +101,8 @@ def beam_grid(
     track_centers : sequence of float, optional
         Lateral positions [m] of tracks, 0 when left out. The first one has the lines ``main`` in its middle and
         ``left`` and ``right`` under its rails, further ones ``main2``, ``left2``, ``right2``, …
-    bearing_stiffness : float, optional
-        Of each bearing [N/m]; rigid when left out.
+    bearing_stiffness, bearing_damping : float, optional
+        Of each bearing [N/m], [N s/m]; rigid when left out.
     damping : Rayleigh or Modal, optional
 
     Raises
@@ -132,7 +133,7 @@ def beam_grid(
     ):
         pairs = np.column_stack([nodes[:-1, where].ravel(), nodes[1:, where].ravel()])
         model = model.with_beams(pairs, section.properties(material), name=title)
-    model = _on_bearings(model, nodes, bearing_stiffness).with_damping(damping)
+    model = _on_bearings(model, nodes, bearing_stiffness, bearing_damping).with_damping(damping)
     compiled = compile_model(model)
     wanted = dict(lines) if lines is not None else _track_lines(track_centers)
     if not wanted:
@@ -175,20 +176,24 @@ def _skew(skew: float) -> float:
 
 
 def _track_lines(centers: Sequence[float] | None) -> dict[str, float]:
-    result = {}
+    result: dict[str, float] = {}
     for number, center in enumerate((0.0,) if centers is None else centers):
         mark = "" if number == 0 else str(number + 1)
         result |= {f"main{mark}": center, f"left{mark}": center + 0.75, f"right{mark}": center - 0.75}
     return result
 
 
-def _on_bearings(model: Model, nodes: np.ndarray, stiffness: float | None) -> Model:
+def _on_bearings(model: Model, nodes: np.ndarray, stiffness: float | None, damping: float | None) -> Model:
+    if damping is not None and stiffness is None:
+        raise InputError("is missing; bearing_damping stands beside it", field="bearing_stiffness")
     spring = None if stiffness is None else {"z": stiffness}
+    dashpot = None if damping is None else {"z": damping}
     for number, own in enumerate(nodes):
         for end, node in (("begin", own[0]), ("end", own[-1])):
             held = ["x", "y"] if (number, end) == (0, "begin") else ["y"] if number == 0 else []
             fixed = held if spring else [*held, "z"]
-            model = model.with_support(int(node), fixed, stiffness=spring, name=f"girder{number + 1}.{end}")
+            name = f"girder{number + 1}.{end}"
+            model = model.with_support(int(node), fixed, stiffness=spring, damping=dashpot, name=name)
     return model
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -62,7 +62,9 @@ class Variation:
             columns.append(np.array(given) if given else None)
         return cls(places, *columns)
 
-    def applied(self, properties: BeamProperties, modulus: float, ends: FloatArray) -> BeamProperties:
+    def applied(
+        self, properties: BeamProperties, modulus: float | FloatArray, ends: FloatArray
+    ) -> BeamProperties:
         """Properties of elements between ends (n_element + 1,): the mean over each element.
 
         The mean of a linear course is its value in the middle; the second moment is that whose flexibility 1/EI
@@ -70,11 +72,12 @@ class Variation:
         first and the last station the value there holds.
         """
         result = properties
-        if self.second_moment is not None:
-            moment = 1.0 / _mean(lambda x: 1.0 / np.interp(x, self.position, self.second_moment), ends)
+        moments, masses = self.second_moment, self.mass_per_length
+        if moments is not None:
+            moment = 1.0 / _mean(lambda x: 1.0 / np.interp(x, self.position, moments), ends)
             result = replace(result, bending_stiffness_y=modulus * moment)
-        if self.mass_per_length is not None:
-            mass = _mean(lambda x: np.interp(x, self.position, self.mass_per_length), ends)
+        if masses is not None:
+            mass = _mean(lambda x: np.interp(x, self.position, masses), ends)
             result = replace(result, mass_per_length=mass)
         return result
 
@@ -84,7 +87,7 @@ _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 _POINTS, _WEIGHTS = 0.5 * (1.0 + _POINTS), 0.5 * _WEIGHTS
 
 
-def _mean(function, ends: FloatArray) -> FloatArray:  # type: ignore[no-untyped-def]
+def _mean(function: Callable[[FloatArray], FloatArray], ends: FloatArray) -> FloatArray:
     """Mean (n_element,) of a function over elements."""
     x = ends[:-1, None] + np.diff(ends)[:, None] * _POINTS
     return np.asarray(function(x) @ _WEIGHTS)

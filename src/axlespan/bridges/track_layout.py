@@ -114,7 +114,7 @@ def layout_over(
         )
     before, behind = ceil(approach / a - 1e-9), ceil((end + exit - begin) / a - 1e-9)
     _check_count(before + behind, a)
-    position = begin + a * (np.arange(-before, behind) + 0.5)
+    position = np.asarray(begin + a * (np.arange(-before, behind) + 0.5), dtype=np.float64)
     on_deck = (position >= begin) & (position < end)
     return _finished(track, position, on_deck, begin - before * a, begin + behind * a, run_in, zones)
 
@@ -136,7 +136,7 @@ def layout_on_ground(track: Track, length: float, run_in: float, zones: Sequence
             value=length,
             fix=f"Use {near:g} m",
         )
-    position = track.spacing * (np.arange(count) + 0.5)
+    position = np.asarray(track.spacing * (np.arange(count) + 0.5), dtype=np.float64)
     return _finished(track, position, np.zeros(count, dtype=bool), 0.0, length, run_in, zones)
 
 

@@ -185,7 +185,7 @@ class TrackBuilder:
         self._add_part(BeamPart(name, pairs, properties, components))
         ends = 2 - np.bincount(np.searchsorted(nodes, pairs.ravel()), minlength=len(nodes))
         if np.any(ends):
-            mass = 0.5 * share * layer.mass * ends[ends > 0]
+            mass = np.asarray(0.5 * share * layer.mass * ends[ends > 0], dtype=np.float64)
             self._add_part(MassPart(f"{name} ends", nodes[ends > 0][:, None], mass[:, None]))
 
     def _mass_part(self, name: str, masses: list[tuple[IntArray, float]]) -> MassPart:

@@ -10,14 +10,14 @@ from __future__ import annotations
 import itertools
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
-import scipy.sparse as sp
 
 from axlespan.bridges.refine import cut_at
 from axlespan.bridges.track import Track, Zone
+from axlespan.bridges.track_base import bases_under, on_ground
 from axlespan.bridges.track_layout import (
     RUN_IN,
     Layout,
@@ -31,7 +31,6 @@ from axlespan.errors import InputError
 from axlespan.linalg.low_rank import LowRank
 from axlespan.model.compile import Compiled, compile_model, dof_table
 from axlespan.model.damping import Rayleigh
-from axlespan.model.dofs import COMPONENTS, DofTable
 from axlespan.model.model import Model, Tie
 from axlespan.model.system import System
 from axlespan.running.geometry import LineGeometry
@@ -104,10 +103,12 @@ def with_track(
             field="bridge",
         )
     names = _lines_of(bridge, line)
-    path = bridge.line(names[0])
-    lengths = [usual_approach(track, run_in) if given is None else given for given in (approach, exit)]
+    under = [bridge.line(name) for name in names]  # skew decks begin at another place under each rail
+    begin, end = min(path.start for path in under), max(path.stop for path in under)
+    usual = usual_approach(track, run_in)
+    before, behind = (usual if given is None else given for given in (approach, exit))
     _warn_of_short(track, run_in, approach, exit)
-    layout = layout_over(track, path.start, path.stop, *lengths, run_in, zones)
+    layout = layout_over(track, begin, end, before, behind, run_in, zones)
     on_deck = layout.position[layout.on_deck]
     cut = bridge
     for name in names:
@@ -118,7 +119,7 @@ def with_track(
     if isinstance(damping, Rayleigh):
         model = model.with_part_damping({part.name: damping for part in model.parts})
     geometry = [LineGeometry.of(cut, name) for name in names]
-    model, bases = _bases(model, cut, layout, names, geometry, dof_table(cut.model))
+    model, bases = bases_under(model, cut, layout, names, geometry, dof_table(cut.model))
     model, rails = _laid(model, track, layout, geometry, bases, _count(rail_elements))
     compiled = compile_model(model)
     system = _with_deck_damping(compiled.system, cut.system)
@@ -129,7 +130,7 @@ def with_track(
     }
     if DECK_LINE not in lines:
         lines[DECK_LINE] = next(iter(decks.values()))
-    facts = {**bridge.facts, "approach": path.start - layout.start, "exit": layout.stop - path.stop}
+    facts = {**bridge.facts, "approach": begin - layout.start, "exit": layout.stop - end}
     return Structure(system, lines, f"{bridge.name} with {track.name}", model, facts)
 
 
@@ -163,7 +164,7 @@ def track_on_ground(
     ends = np.array([0.0, length])
     geometry = [LineGeometry(ends, np.array([[0.0, y, 0.0], [length, y, 0.0]])) for y in sides]
     model = Model(plane=not space)
-    model, ground = _ground(model, geometry[0].at(0.0), "track")
+    model, ground = on_ground(model, geometry[0].at(0.0), "track")
     bases = [np.full(len(layout.position), ground) for _ in sides]
     model, rails = _laid(model, track, layout, geometry, bases, _count(rail_elements))
     compiled = compile_model(model)
@@ -218,62 +219,6 @@ def _lines_of(bridge: Structure, line: str | Sequence[str] | None) -> tuple[str,
             fix=f"Known: {', '.join(bridge.lines)}",
         )
     return tuple(names)
-
-
-@dataclass(frozen=True, eq=False)
-class _Places:
-    """Nodes and components of a model's d.o.f. by their numbers."""
-
-    node: IntArray
-    component: IntArray
-
-    @classmethod
-    def of(cls, table: DofTable) -> _Places:
-        nodes, components = np.nonzero(table.number >= 0)
-        order = np.argsort(table.number[nodes, components])
-        return cls(nodes[order], components[order])
-
-
-def _ground(model: Model, point: FloatArray, name: str) -> tuple[Model, int]:
-    """A node of the ground, with one support for all that stands on it."""
-    node = len(model.points)
-    model = model.with_nodes(point[None], [f"{name}:ground"])
-    return model.with_support(node, ("z",), name=name), node
-
-
-def _bases(
-    model: Model,
-    bridge: Structure,
-    layout: Layout,
-    names: Sequence[str],
-    geometry: Sequence[LineGeometry],
-    table: DofTable,
-) -> tuple[Model, list[IntArray]]:
-    """What the last springs stand on: the ground before and behind the bridge, and points of its lines."""
-    model, before = _ground(model, geometry[0].at(layout.start), "approach")
-    model, behind = _ground(model, geometry[0].at(layout.stop), "exit")
-    deck = np.flatnonzero(layout.on_deck)
-    places = _Places.of(table)
-    bases = []
-    for name, where in zip(names, geometry, strict=True):
-        first = len(model.points)
-        model = model.with_nodes(where.at(layout.position[deck]))
-        rows = sp.csr_array(bridge.line(name).rows(layout.position[deck], bridge.system.size))
-        ties = []
-        for i in range(len(deck)):
-            own = slice(rows.indptr[i], rows.indptr[i + 1])
-            numbers, weights = bridge.system.independent[rows.indices[own]], rows.data[own]
-            large = np.abs(weights) > 1e-12
-            masters = tuple(
-                (int(places.node[k]), COMPONENTS[places.component[k]], float(weight))
-                for k, weight in zip(numbers[large], weights[large], strict=True)
-            )
-            ties.append(Tie((first + i, "z"), masters))
-        model = replace(model, ties=(*model.ties, *ties))
-        base = np.where(layout.before, before, behind)
-        base[deck] = np.arange(first, first + len(deck))
-        bases.append(base)
-    return model, bases
 
 
 def _laid(

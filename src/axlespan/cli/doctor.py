@@ -10,6 +10,7 @@ import sys
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from axlespan import __version__
 from axlespan.cli.messages import DONE, FAILED, say
@@ -116,7 +117,7 @@ def _speed() -> bool:
     return _example()
 
 
-def _matrices() -> list[tuple[str, object]]:
+def _matrices() -> list[tuple[str, Any]]:
     import scipy.sparse as sp
 
     def laplacian(n: int) -> sp.csr_array:
@@ -133,13 +134,13 @@ def _matrices() -> list[tuple[str, object]]:
     return [("track, 5 400 equations", grid(1350, 4)), ("solid, 12 000 equations", grid(60, 20, 10))]
 
 
-def _times(matrix: object, kind: str) -> tuple[float, float]:
+def _times(matrix: Any, kind: str) -> tuple[float, float]:
     import numpy as np
 
     from axlespan.linalg.factor import factorize
 
     begun = time.perf_counter()
-    factor = factorize(matrix, kind=kind)  # type: ignore[arg-type]
+    factor = factorize(matrix, kind=kind)
     factored = time.perf_counter() - begun
     load = np.ones(matrix.shape[0])
     return factored, min(_timed(lambda: factor.solve(load)) for _ in range(5))

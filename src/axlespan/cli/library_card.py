@@ -3,27 +3,33 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from axlespan.cli.columns import columns
+from axlespan.cli.library_sketch import train_sketch, vehicle_sketch
 from axlespan.cli.library_table import MARK, axle_forces
 from axlespan.vehicles.library import LibraryEntry
 from axlespan.vehicles.library.trains import train_of
 from axlespan.vehicles.mode_words import vehicle_modes
 from axlespan.vehicles.vehicle import Vehicle
 
+FloatArray = npt.NDArray[np.float64]
+
 _WIDTH = 100
-_SKETCH = 76
 
 
 def card(entry: LibraryEntry) -> list[str]:
     """Return the lines about an entry."""
     lines = [f"{entry.name}: {entry.title}", ""]
-    lines += _of_vehicle(entry, entry.model) if entry.model is not None else _of_train(entry)
-    lines += _values(entry)
-    return [*lines, *_sources(entry), *_notes(entry)]
+    if entry.model is not None:
+        lines += [*_of_vehicle(entry, entry.model), *_values(entry), *_sources(entry), *_notes(entry)]
+        return lines
+    lines += [*_of_train(entry), *_values(entry), *_sources(entry), *_notes(entry)]
+    for inner in {group.entry.name: group.entry for group in entry.groups}.values():
+        lines += ["-" * _WIDTH, "", *card(inner), ""]
+    return lines[:-1]
 
 
 def _of_vehicle(entry: LibraryEntry, vehicle: Vehicle) -> list[str]:
@@ -34,7 +40,7 @@ def _of_vehicle(entry: LibraryEntry, vehicle: Vehicle) -> list[str]:
         + (f", length {vehicle.length:g} m" if vehicle.length else "")
         + (f", {entry.pitch:g} m from first wheel to first wheel of the next" if entry.pitch else ""),
         "",
-        *sketch(vehicle),
+        *vehicle_sketch(vehicle),
         "",
         "Static axle loads (g = 9.81 m/s^2)",
     ]
@@ -47,7 +53,8 @@ def _of_vehicle(entry: LibraryEntry, vehicle: Vehicle) -> list[str]:
     if modes:
         rows = [["f [Hz]", "damping", ""]]
         rows += [[f"{m.frequency:.4g}", f"{100 * m.damping_ratio:.3g} %", m.description] for m in modes]
-        lines += ["Natural frequencies, contact points held", *columns(rows, right=(0, 1)), ""]
+        lines += ["Natural frequencies, contact points held", *columns(rows, right=(0, 1))]
+        lines += [*_stated_frequencies(entry, np.array([mode.frequency for mode in modes])), ""]
     return lines
 
 
@@ -70,6 +77,15 @@ def _stated_mass(entry: LibraryEntry, vehicle: Vehicle) -> list[str]:
     return [
         f"  mass {vehicle.total_mass / 1e3:.6g} t, {_compared(f'{told / 1e3:.6g} t', vehicle.total_mass / told - 1.0)}"
     ]
+
+
+def _stated_frequencies(entry: LibraryEntry, found: FloatArray) -> list[str]:
+    """Words that compare each frequency that the source says with the nearest one."""
+    lines = []
+    for told in entry.stated.frequencies:
+        nearest = float(found[np.argmin(np.abs(found - told))])
+        lines.append(f"  {nearest:.4g} Hz, {_compared(f'{told:.4g} Hz', nearest / told - 1.0)}")
+    return lines
 
 
 def _compared(told: str, error: float) -> str:
@@ -95,57 +111,11 @@ def _of_train(entry: LibraryEntry) -> list[str]:
         f"  {len(train.placements)} vehicles, {len(train.contacts)} wheels, mass {mass / 1e3:.6g} t, "
         f"{train.wheelbase:.6g} m from first wheel to last",
         "",
+        *train_sketch(train),
+        "",
         *columns(rows, right=(1, 2, 3)),
         "",
-        "All about a vehicle: axlespan library NAME",
-        "",
     ]
-
-
-# --- sketch ---------------------------------------------------------------------------------------
-
-
-def sketch(vehicle: Vehicle, width: int = _SKETCH) -> list[str]:
-    """Return a side view in letters: bodies at their centers over the wheels; the front is left."""
-    positions = sorted({point.behind for point in vehicle.contacts})
-    low = min([*positions, *vehicle.bodies.values()])
-    high = max([*positions, *vehicle.bodies.values()])
-    scale = (width - 1) / (high - low) if high > low else 0.0
-
-    def column(x: float) -> int:
-        return round((x - low) * scale)
-
-    rail = ["-"] * (width if scale else 1)
-    for x in positions:
-        rail[column(x)] = "O"
-    lines = [f"  {''.join(rail)}", f"  {_labels([(column(x), f'{x:.4g}') for x in positions])}"]
-    marks = [(column(x), name) for name, x in vehicle.bodies.items()]
-    return [*[f"  {line}" for line in _stacked(marks)], *lines[:1], f"{lines[1]} m"]
-
-
-def _labels(labels: Sequence[tuple[int, str]]) -> str:
-    """Words that start at their columns, as far as they don't run into each other."""
-    text = ""
-    for column, word in labels:
-        if column > len(text) or not text:
-            text = text.ljust(column) + word
-    return text
-
-
-def _stacked(labels: Sequence[tuple[int, str]]) -> list[str]:
-    """Words around their columns, in as many lines as they need; names of wheels' own bodies come last."""
-    lines: list[str] = []
-    for column, word in labels:
-        begin = max(0, column - len(word) // 2)
-        for i, line in enumerate(lines):
-            if len(line) + 1 < begin or (
-                len(line) > begin + len(word) and not line[max(begin - 2, 0) : begin + len(word) + 2].strip()
-            ):
-                lines[i] = line[:begin].ljust(begin) + word + line[begin + len(word) :]
-                break
-        else:
-            lines.append(" " * begin + word)
-    return lines
 
 
 # --- numbers and sources -----------------------------------------------------------------------------

@@ -148,7 +148,12 @@ def _assessed(built: BuiltCase, result: Result) -> list[dict[str, Any]]:
     asked = built.loaded.case.assessment
     if asked is None or result.outcome.code != "completed":
         return []
-    return [verdict.as_dict() for verdict in assess(result, built.crossing, asked.wanted())]
+    try:
+        return [verdict.as_dict() for verdict in assess(result, built.crossing, asked.wanted())]
+    except Exception as error:  # hours of computing are not lost for a rule
+        reason = " ".join((str(error) or type(error).__name__).split())[:200]
+        warn(f"warning: the run could not be assessed: {reason}")
+        return []
 
 
 def _draw(built: BuiltCase, result: Result, folder: Path) -> list[str]:

@@ -71,9 +71,7 @@ def _estimated(study: Study, trial: Trial, workers: int) -> Estimate:
 
 def _description(study: Study, trial: Trial, about: Estimate) -> list[str]:
     scenarios = study._scenarios
-    factors = " × ".join(
-        f"{len(axis)} of {', '.join(axis.paths)}" for axis in scenarios.axes
-    )
+    factors = " × ".join(f"{len(axis)} of {', '.join(axis.paths)}" for axis in scenarios.axes)
     lines = [
         study.title,
         f"  scenarios   {about.scenarios}: {factors}",
@@ -225,12 +223,16 @@ def _write_one(study: Study, scenario: Scenario, result: Result, stage: Path, fo
     recording = study.spec.recording
     if recording is not None and result.outcome.code == "completed":
         values = scenario.record(result)
-        record = Histories((scenario.id,), 1.0 / recording.rate, {recording.quantity: ("sensor", result.sensor, [values])})
+        record = Histories(
+            (scenario.id,), 1.0 / recording.rate, {recording.quantity: ("sensor", result.sensor, [values])}
+        )
         (stage / "record.nc").write_bytes(shard_bytes(record, {"provenance": scenario.provenance}))
         files.append("record.nc")
     title = f"{study.title}, scenario {scenario.id}"
     facts: dict[str, Any] = summary(result, scenario.built.crossing, title=title, files=files)
-    write_summary(facts | {"scenario": scenario.values, "provenance": scenario.provenance}, stage / "summary.json")
+    write_summary(
+        facts | {"scenario": scenario.values, "provenance": scenario.provenance}, stage / "summary.json"
+    )
     publish(stage, folder)
     return [*summary_lines(facts), f"Written to {folder}"]
 
@@ -303,7 +305,9 @@ class _Lines:
         self._last = now
         rate = max(done - self._first, 1) / (now - self._begun)
         left = (self._total - done) / rate
-        warn(f"{done} of {self._total} done, {failed} failed, {rate:.3g} a second, about {_duration(left)} left")
+        warn(
+            f"{done} of {self._total} done, {failed} failed, {rate:.3g} a second, about {_duration(left)} left"
+        )
 
 
 def _duration(seconds: float) -> str:
@@ -326,4 +330,3 @@ def _duration(seconds: float) -> str:
 
 def _counted(number: int, what: str) -> str:
     return f"{number} {what}" if number == 1 else f"{number} {what}s"
-

@@ -80,6 +80,13 @@ class WheelLaws:
             k[wheels], c[wheels] = law.tangent(total[wheels], rate[wheels])
         return k, c
 
+    def approach(self, force: FloatArray) -> FloatArray:
+        """Approaches (n,), from the static ones on, of the compliant wheels under forces (n,) at rest."""
+        result = np.zeros(len(force))
+        for law, wheels in self.groups:
+            result[wheels] = law.approach(force[wheels]) - self.indentation[wheels]
+        return result
+
     def energy(self, approach: FloatArray) -> FloatArray:
         """Work (n,) [J] held, above that of no approach."""
         result, total = np.zeros(len(approach)), approach + self.indentation

@@ -20,7 +20,7 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from axlespan.dynamics.alpha import Alpha
-from axlespan.dynamics.step_kernel import compiled_completion, compiled_right_side
+from axlespan.dynamics.step_kernel import compiled_completion, compiled_reading, compiled_right_side
 from axlespan.linalg.compiled import Loop
 from axlespan.linalg.factor import Factor, factorize
 from axlespan.linalg.low_rank import LowRank, UpdatedFactor
@@ -217,6 +217,8 @@ class Stepper:
                 [*integrator.prediction[1], integrator.v_from_a],
             ]
         )
+        self._ahead_weights = self._advance[0].tolist()
+        self._read = compiled_reading()
         self._ahead = np.empty((2, state.values[0].size))
         self.force = self._work[n_row]  # (1+α) F^c - α F^p of the next prediction [N]; used up by it
         self.acceleration = np.zeros(shape)  # of the new time, as far as it is known
@@ -231,9 +233,12 @@ class Stepper:
             self._forceless = np.ascontiguousarray(self._dense[:, : width - integrator.size])
         else:
             self._right_side = compiled_right_side(len(shape) == 1 or shape[1] == 1)
-            self._complete = compiled_completion()
+            self._use_compiled_completion()
             m = integrator.matrices
             self._sparse = [_parts(m.K, m.size), _parts(m.C, m.size)]
+
+    def _use_compiled_completion(self) -> None:
+        self._complete = compiled_completion()
 
     def predict(self, *, forceless: bool = False) -> None:
         """Advance under ``force``; ``forceless`` says that there is none, whatever stands there."""
@@ -271,7 +276,12 @@ class Stepper:
         values = self.state.values.reshape(3, -1)
         if self._done:
             return values[0].take(where)
-        _, dt, late, new = self._advance[0].tolist()
+        _, dt, late, new = self._ahead_weights
+        if self._read is not None:
+            result = np.empty(where.shape)
+            flat = self.acceleration.reshape(-1)
+            self._read(where.reshape(-1), dt, late, new, values, flat, result.reshape(-1))
+            return result
         result = values[1].take(where)
         result *= dt
         result += late * values[2].take(where)

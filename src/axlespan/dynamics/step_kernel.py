@@ -5,6 +5,8 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
+import numpy as np
+
 from axlespan.linalg.compiled import Loop, compiled
 
 
@@ -18,6 +20,12 @@ def compiled_right_side(single: bool) -> Loop | None:
 def compiled_completion() -> Loop | None:
     """Return :func:`complete` as machine code, or None without numba."""
     return compiled(complete)
+
+
+@cache
+def compiled_reading() -> Loop | None:
+    """Return :func:`read_ahead` as machine code, or None without numba."""
+    return compiled(read_ahead)
 
 
 def right_side(single: bool) -> Loop:
@@ -81,3 +89,11 @@ def complete(
         u[i] = (u[i] + (dt * v[i] + late_u * a[i])) + u_from_a * new
         v[i] = (v[i] + late_v * a[i]) + v_from_a * new
         a[i] = new
+
+
+def read_ahead(where: Any, dt: float, late: float, new: float, values: Any, acceleration: Any, result: Any) -> None:
+    """Fill ``result`` (m,) with displacements at the new time at flat positions, as far as known."""
+    u, v, a = values[0], values[1], values[2]
+    for i in range(where.shape[0]):
+        r = np.uint64(where[i])  # unsigned: see the band kernel
+        result[i] = u[r] + (dt * v[r] + late * a[r]) + new * acceleration[r]

@@ -14,17 +14,15 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from axlespan.dynamics.alpha import Alpha
+from axlespan.dynamics.block_step import Blocks, BlockStepper
 from axlespan.dynamics.integrator import Integrator, Matrices, State, Stepper
 from axlespan.interaction.path_columns import PathColumns
-from axlespan.interaction.path_kernel import subtract_at
+from axlespan.interaction.path_kernel import load_sums, subtract_at
 from axlespan.interaction.plan import Fleet
+from axlespan.linalg.products import Product
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
-
-# Up to this many entries a dense product is quicker than a sparse one.
-_DENSE_UP_TO = 10_000
-
 
 class PreparedStructure:
     """A structure, factored for one method and time step: serves every train, speed and irregularity."""
@@ -123,10 +121,7 @@ class StructureBody:
     def path_load(self, flat: IntArray, weights: FloatArray, forces: FloatArray) -> FloatArray:
         """Eᵀ X (n_held,) or (n_held, k) of wheels with rows (n_wheel, n_local) and forces (n_wheel,)."""
         n_held = len(self.columns.held)
-        loads = (weights * forces[:, None]).ravel()
-        # A row may name d.o.f. with zero weight that are not held; they fall behind the held ones or add zero.
-        total = np.asarray(np.bincount(flat.ravel(), loads, minlength=n_held * self.lanes), dtype=np.float64)
-        total = total[: n_held * self.lanes]
+        total = load_sums(flat, weights, forces, n_held * self.lanes)
         return total if self.lanes == 1 else total.reshape(n_held, self.lanes)
 
     def take(self, coupled: FloatArray | None, known: FloatArray | None) -> None:
@@ -169,12 +164,17 @@ class FleetBody:
     ) -> None:
         self.fleet = fleet
         self.integrator = Integrator(fleet.matrices, method, time_step)
-        self.stepper = Stepper(self.integrator, state.copy())
-        columns = self._unit_responses()
+        blocks = Blocks.of(self.integrator, fleet.owner_of_dof)
+        if blocks is None:
+            self.stepper, columns = Stepper(self.integrator, state.copy()), self._unit_responses()
+        else:
+            self.stepper = BlockStepper(self.integrator, state.copy(), blocks)
+            columns = blocks.unit_responses(fleet.dofs)
         scale = self.integrator.weight_c * self.integrator.u_from_a
         self.compliance = scale * columns[fleet.dofs]
-        self.stiffness = _operand(_block_inverse(self.compliance, fleet.vehicle_of))
-        self._columns = _operand(self.integrator.weight_c * columns)
+        self.stiffness = _block_inverse(self.compliance, fleet.vehicle_of)
+        self._stiffness = Product(self.stiffness)
+        self._columns = Product(sp.csr_array(self.integrator.weight_c * columns))
         self.static = fleet.weight[fleet.coupled]  # (n_coupled,) [N]
         self.forces = forces.copy()  # (n_coupled,) of the last completed step [N]
 
@@ -214,9 +214,13 @@ class FleetBody:
         """Displacements (n_coupled,) of the contact points at the new time as far as known."""
         return self.stepper.displacement(self.fleet.dofs)
 
+    def on_ground(self, gap: FloatArray) -> FloatArray:
+        """Contact forces (n_coupled,) that close the gaps of wheels on rigid ground."""
+        return self._stiffness.of(gap)
+
     def take(self, forces: FloatArray) -> None:
         """Take the contact forces (n_coupled,) of the new time, and complete the step."""
-        self.stepper.finish(np.asarray(self._columns @ forces))
+        self.stepper.finish(self._columns.of(forces))
         self.forces = forces
 
     def put(self, values: FloatArray, forces: FloatArray) -> None:
@@ -246,7 +250,3 @@ def _block_inverse(matrix: sp.csr_array, owner: IntArray) -> sp.csr_array:
         inverse = np.linalg.inv(0.5 * (block + block.T))
         blocks.append(0.5 * (inverse + inverse.T))
     return sp.csr_array(sp.block_diag(blocks, format="csr"))
-
-
-def _operand(matrix: sp.csr_array) -> FloatArray | sp.csr_array:
-    return matrix.toarray() if matrix.shape[0] * matrix.shape[1] <= _DENSE_UP_TO else matrix

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+from axlespan.card import Card, Shown
 from axlespan.contact.motion import Course, SpeedHistory
 from axlespan.errors import InputError
 from axlespan.irregularity import Profile, Smooth
 from axlespan.model.dofs import nearest
 from axlespan.running.structure import MAIN_LINE, Structure
 from axlespan.vehicles.train import Placement, Train
-from axlespan.vehicles.vehicle import GRAVITY
+from axlespan.vehicles.vehicle import GRAVITY, LEFT, RIGHT
 
 #: Directions of a train, by their words.
 DIRECTIONS = {"forward": 1, "backward": -1}
@@ -93,8 +94,8 @@ class Run:
     first: int  # vehicles of the trains before
 
 
-@dataclass(frozen=True, eq=False)
-class Crossing(Movement):
+@dataclass(frozen=True, eq=False, repr=False)
+class Crossing(Shown, Movement):
     """One or several trains cross a structure.
 
     Parameters
@@ -113,7 +114,8 @@ class Crossing(Movement):
     start : float, optional
         Position of the head at time zero [m]: 0 when left out, the end of its line for a train that runs backward.
     direction : {"forward", "backward"}
-        Backward trains run along decreasing positions.
+        Backward trains run along decreasing positions. Left wheels of vehicles in space then run on the line
+        ``right``, unless ``line`` says otherwise.
     line : str or mapping, optional
         Running line of the wheels that name none; or lines of the structure by those that the wheels name.
     delay : float
@@ -157,7 +159,7 @@ class Crossing(Movement):
         return tuple(runs)
 
     def _run(self, moving: Movement, train: Train, first: int) -> Run:
-        lines = tuple(moving.on_line(point.line) for _, _, point, _ in train.contacts)
+        lines = tuple(_lines(moving, train))
         for name in dict.fromkeys(lines):
             self.structure.line(name)  # it is there
         direction, start = DIRECTIONS[moving.direction], moving.start
@@ -207,3 +209,33 @@ class Crossing(Movement):
     def contact_names(self) -> tuple[str, ...]:
         """Names of the contacts, ``vehicle.wheel``; vehicles count from the head of the first train on."""
         return tuple(name for run in self.runs for name in run.train.names_from(run.first))
+
+    def card(self) -> Card:
+        """Return what is shown of it, with a time step and as many steps as the last wheel needs to leave."""
+        top = float(self.motion.speeds.max())
+        line = self.structure.line()
+        facts = [
+            ("structure", f"{self.structure.name}, {line.start:g} to {line.stop:g} m"),
+            ("train", self.train_names),
+            (
+                "speed",
+                f"{3.6 * float(self.motion.speeds[0]):.6g} km/h at first, {3.6 * top:.6g} km/h at most",
+            ),
+            ("irregularity", "none" if self.irregularity is None else type(self.irregularity).__name__),
+        ]
+        way = line.stop - line.start + self.train.wheelbase
+        after = (
+            ""
+            if top == 0.0
+            else f"asp.simulate(crossing, time_step=1e-3, steps={int(1e3 * way / top) + 1000})"
+        )
+        return Card("Crossing", facts, after)
+
+
+def _lines(moving: Movement, train: Train) -> Iterator[str]:
+    """Lines of the structure under all wheels of a train."""
+    turned = {LEFT: RIGHT, RIGHT: LEFT} if moving.direction == "backward" and moving.line is None else {}
+    for item in train.placements:
+        names = [point.line for point in item.vehicle.contacts]
+        sides = turned if set(names) == {LEFT, RIGHT} else {}
+        yield from (sides.get(name, moving.on_line(name)) for name in names)

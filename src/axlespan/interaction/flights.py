@@ -61,8 +61,12 @@ class Flights:
         self._first = np.searchsorted(fleet.vehicle_of, np.unique(fleet.vehicle_of))
         self._last = 0
 
-    def look(self, step: int, in_air: Mask, approach: FloatArray, closing: FloatArray) -> None:
-        """Look at a completed step: wheels in the air, approaches [m] and closing speeds [m/s], all (n_coupled,).
+    def look(
+        self, step: int, in_air: Mask, struck: Mask, approach: FloatArray, closing: FloatArray
+    ) -> None:
+        """Look at a completed step: wheels in the air, those that struck the line, approaches [m], closing speeds [m/s].
+
+        A wheel may strike the line and be in the air again at once: two flights.
 
         Raises
         ------
@@ -74,9 +78,10 @@ class Flights:
         if not (flew.any() or in_air.any()):
             return
         self._gap = np.maximum(self._gap, np.where(in_air, -approach, 0.0))
-        for wheel in np.flatnonzero(flew & ~in_air).tolist():
+        ended = flew & (struck | ~in_air)
+        for wheel in np.flatnonzero(ended).tolist():
             self._close(wheel, step, float(closing[wheel]))
-        self._since = np.where(in_air, np.where(flew, self._since, step), -1)
+        self._since = np.where(in_air, np.where(flew & ~ended, self._since, step), -1)
         self._lost(step)
 
     def _close(self, wheel: int, step: int, closing: float) -> None:

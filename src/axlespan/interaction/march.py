@@ -42,7 +42,7 @@ def couple_directly(convoy: Convoy, stretch: Stretch, k: int, external: FloatArr
     into = stretch.into
     if len(into):
         gap[into] += structure.gather(stretch.flat[k], stretch.held[k], stretch.weights[k])
-    forces = np.asarray(fleet.stiffness @ gap)  # wheels of vehicles that are wholly off the structure
+    forces = fleet.on_ground(gap)  # wheels of vehicles that are wholly off the structure
     load = None
     if len(into):
         try:

@@ -287,7 +287,7 @@ class NonlinearCoupling:
             self.touching = laws.rigid | (laws.unilateral & (fleet.forces > 0.0))
             self.landings, self.loss = self.landings + int(landed.sum()), self.loss + loss
         self.before, self.approach = self.approach, approach
-        self.flights.look(step, laws.may_part & ~(fleet.forces > 0.0), approach, closing)
+        self.flights.look(step, laws.may_part & ~(fleet.forces > 0.0), landed, approach, closing)
 
     def _closing_rates(self, free: FloatArray) -> FloatArray:
         """Rates (n_coupled,) [m/s] at which gaps close when they do, from the last approaches and the free one."""

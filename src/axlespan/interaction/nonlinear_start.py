@@ -30,6 +30,7 @@ from axlespan.linalg.factor import factorize
 FloatArray = npt.NDArray[np.float64]
 
 _LIMIT, _TOLERANCE, _HALVINGS = 100, 1e-12, 10
+_FOLLOWS = 100  # iterations of the approaches of wheels that follow the line
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,15 +64,51 @@ def nonlinear_start(
     approach[touching] = 0.0
     speed, _ = plan.rows.motion(0.0)
     vehicles.v[fleet.dofs] = (rows.rate + speed * (rows.E1 @ structure.u))[x]
-    given = fleet.weight.copy()
-    given[x] = np.where(touching, 0.0, forces)
     inner = -(springs.rows.T @ deviation) if springs.n else None
-    total, _ = balance.accelerate(rows, structure, vehicles, 0.0, touching, given, inner)
+    forces[laws.unilateral & ~touching] = 0.0
+    total = _moving(balance, rows, (structure, vehicles), touching, forces, approach, inner)
     load = np.asarray(rows.E.T @ total)
     if springs.n:
         load = load + springs.rows.T @ deviation
         springs.begin(elongation)
     return NonlinearStart(Start(structure, vehicles, total, load), approach, deviation, touching)
+
+
+def _moving(
+    balance: Balance,
+    rows: ContactRows,
+    bodies: tuple[State, State],
+    touching: npt.NDArray[np.bool_],
+    forces: FloatArray,
+    approach: FloatArray,
+    inner: FloatArray | None,
+) -> FloatArray:
+    """Set accelerations as the motion along the line asks for them; contact forces (n_contact,).
+
+    Wheels on compliant contacts follow the line too: approaches change from those at rest until the law gives the
+    force that this takes.
+    """
+    laws, fleet, x = balance.laws, balance.plan.fleet, balance.plan.fleet.coupled
+    structure, vehicles = bodies
+    follows = touching | (~laws.constrained & (forces > 0.0))
+    at_rest, u_x, total = approach.copy(), vehicles.u[fleet.dofs].copy(), fleet.weight.copy()
+    for _ in range(_FOLLOWS):
+        given = fleet.weight.copy()
+        given[x] = np.where(follows, 0.0, forces)
+        total, _ = balance.accelerate(rows, structure, vehicles, 0.0, follows, given, inner)
+        wanted = np.where(follows & ~touching, laws.approach(total[x]), approach)
+        if np.any(wanted[follows & ~touching] + laws.indentation[follows & ~touching] <= 0.0):
+            break
+        change = float(np.abs(wanted - approach).max(initial=0.0))
+        approach[:] = wanted
+        vehicles.u[fleet.dofs] = u_x - (approach - at_rest)
+        if change <= 1e-15:
+            return total
+    approach[:], vehicles.u[fleet.dofs] = at_rest, u_x  # contacts too soft to follow: they start from rest
+    given = fleet.weight.copy()
+    given[x] = np.where(touching, 0.0, forces)
+    total, _ = balance.accelerate(rows, structure, vehicles, 0.0, touching, given, inner)
+    return total
 
 
 def _vehicles(plan: Plan, u_x: FloatArray) -> FloatArray:

@@ -29,6 +29,31 @@ def subtract_at(places: IntArray, factor: float, load: FloatArray, force: FloatA
     loop(places, factor, load.reshape(len(places), -1), force.reshape(len(force), -1))
 
 
+@cache
+def _compiled_sums() -> Loop | None:
+    return compiled(_sums)
+
+
+def load_sums(flat: IntArray, weights: FloatArray, forces: FloatArray, size: int) -> FloatArray:
+    """Eᵀ X (size,) of wheels with rows (n_wheel, n_local) and forces (n_wheel,), by flat places.
+
+    A row may name places with zero weight that lie behind the size.
+    """
+    if (loop := _compiled_sums()) is None:
+        loads = (weights * forces[:, None]).ravel()
+        return np.asarray(np.bincount(flat.ravel(), loads, minlength=size), dtype=np.float64)[:size]
+    result = np.zeros(size)
+    loop(flat, weights, forces, result)
+    return result
+
+
+def _sums(flat: Any, weights: Any, forces: Any, result: Any) -> None:
+    for i in range(forces.shape[0]):
+        for a in range(flat.shape[1]):
+            if weights[i, a] != 0.0:
+                result[np.uint64(flat[i, a])] += weights[i, a] * forces[i]
+
+
 def _scatter(places: Any, factor: float, load: Any, force: Any) -> None:
     for i in range(places.shape[0]):
         row = np.uint64(places[i])  # unsigned: see the band kernel

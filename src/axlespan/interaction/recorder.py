@@ -14,6 +14,7 @@ from axlespan.dynamics.integrator import State
 from axlespan.errors import AnalysisError, Outcome
 from axlespan.interaction.envelopes import EnvelopeMonitor
 from axlespan.interaction.fields import FieldWatcher
+from axlespan.interaction.force_noise import NoiseMonitor
 from axlespan.interaction.line_histories import LineHistories
 from axlespan.interaction.monitors import BalanceMonitor, CompatibilityMonitor, EnergyMonitor, TensionMonitor
 from axlespan.interaction.plan import Plan
@@ -67,6 +68,7 @@ class Recorder:
         self.envelopes, self.line = EnvelopeMonitor(plan), LineHistories(plan)
         self._keepers: tuple[Keeper, ...] = (self.sections, self.stresses, self.envelopes, self.line)
         self.balance, self.tension = BalanceMonitor(plan, self.reactions.paths), TensionMonitor(plan)
+        self.noise = NoiseMonitor(plan.fleet.weight, plan.fleet.coupled)
         # Steps at which a wheel landed, or after which one let go, with what was set anew: see the balance monitor.
         self.restarted: dict[int, float] = {}
         self.reactions.restarted = self.balance.restarted = self.energy.restarted = self.restarted
@@ -162,6 +164,7 @@ class Recorder:
         reactions = self.reactions.of(steps, values[:, :, n_sensor:], positions, tape.forces)
         self.balance.look(steps, tape.sums, reactions, positions, tape.forces)
         self.tension.look(steps, positions, tape.forces)
+        self.noise.look(tape.forces)
         for step in [step for step in self.released if step < steps[-1]]:
             del self.released[step]
         for keeper, at in zip(self._keepers, self._more, strict=True):
@@ -237,6 +240,7 @@ class Recorder:
             "compatibility_residual": self.compatibility.residual,
             "equilibrium_residual": self.balance.residual,
             "energy_residual": self.energy.residual,
+            "force_noise": self.noise.largest,
             "tension_episodes": tension.count,
             "tension": [asdict(episode) for episode in tension.episodes],
             "largest_contact_force": by_contact(tension.largest),

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from axlespan.card import Card, Shown
 from axlespan.errors import InputError, Outcome
 from axlespan.interaction.envelopes import Envelopes
 from axlespan.interaction.extras import SECTION_VARIABLES, extra_coordinates, extra_variables
@@ -49,8 +50,8 @@ def _empty() -> FloatArray:
     return np.zeros(0)
 
 
-@dataclass(frozen=True, eq=False)
-class Result:
+@dataclass(frozen=True, eq=False, repr=False)
+class Result(Shown):
     """What a crossing gave, at the times kept."""
 
     time: FloatArray  # (n_time,) [s]
@@ -144,13 +145,16 @@ class Result:
             variables, coordinates, {"outcome": self.outcome.code, "outcome_message": self.outcome.message}
         )
 
-    def __repr__(self) -> str:
-        peak = f"{self.contact_force.max():.6g} N" if self.contact_force.size else "none"
-        lines = [
-            f"Result: {self.outcome.code}, {len(self.time)} times to {self.time[-1]:.6g} s",
-            f"  sensors: {', '.join(self.sensor) or 'none'}; {len(self.contact)} contacts, largest force {peak}",
+    def card(self) -> Card:
+        """Return what is shown of it."""
+        facts = [
+            ("outcome", f"{self.outcome.code}: {self.outcome.message}"),
+            ("times", f"{len(self.time)} to {self.time[-1]:.6g} s"),
         ]
         for i, name in enumerate(self.sensor):
-            u = self.sensor_displacement[:, i]
-            lines.append(f"  {name}: displacement {1e3 * u.min():.4f} to {1e3 * u.max():.4f} mm")
-        return "\n".join(lines)
+            u = 1e3 * self.sensor_displacement[:, i]
+            facts.append((name, f"displacement {u.min():.4f} to {u.max():.4f} mm"))
+        if self.contact_force.size:
+            low, high = self.contact_force.min() / 1e3, self.contact_force.max() / 1e3
+            facts.append(("contact forces", f"{low:.6g} to {high:.6g} kN, {len(self.contact)} wheels"))
+        return Card("Result", facts, 'result.at("contact_force", "1.1"), result.to_xarray()')

@@ -81,10 +81,11 @@ def sensor_rows(
 ) -> sp.csr_array:
     """Rows (n_sensor, n) of all sensors over the independent d.o.f."""
     n = structure.system.size
-    rows = sp.lil_array((len(positions), n))
+    blocks, order = [sp.csr_array((0, n))], [np.empty(0, dtype=np.int64)]
     for line, (numbers, where) in by_line(structure, list(positions), positions, lines).items():
-        rows[numbers] = structure.line(line).rows(where, n)
-    return sp.csr_array(rows)
+        blocks.append(structure.line(line).rows(where, n))
+        order.append(numbers)
+    return sp.csr_array(sp.csr_array(sp.vstack(blocks))[np.argsort(np.concatenate(order))])
 
 
 def as_weights(rows: sp.csr_array) -> tuple[IntArray, FloatArray]:

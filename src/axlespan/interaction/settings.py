@@ -133,6 +133,8 @@ def settings_for(
     notes: list[str] = []
     chosen = _method(crossing, method, notes)
     length = _footprint(crossing, footprint, notes)
+    if sleepers is not None:
+        notes.append(f"each wheel's force is shared by three sleepers {sleepers:g} m apart: 25, 50 and 25 %")
     places, lines = split_places(crossing.structure, sensors)
     if basis != "full" and (section_forces or set(envelopes or ()) & {"moment", "shear"}):
         notes.append(

@@ -141,7 +141,8 @@ def _what(crossing: Crossing | None, end: float) -> dict[str, Any]:
     if crossing is None:
         return dict.fromkeys(names)
     first, *others = [_moving(run, end) for run in crossing.runs]
-    values = (crossing.structure.name, *(_ends(crossing) or (None, None)), *first.values(), others)
+    own = [value for name, value in first.items() if name != "wheels"]
+    values = (crossing.structure.name, *(_ends(crossing) or (None, None)), *own, others)
     return dict(zip(names, values, strict=True))
 
 
@@ -151,6 +152,7 @@ def _moving(run: Run, end: float) -> dict[str, Any]:
     return {
         "train": run.train.name,
         "vehicles": len(run.train.placements),
+        "wheels": len(run.lines),
         "speed_start_m_per_s": speeds[0],
         "speed_end_m_per_s": speeds[1],
     }

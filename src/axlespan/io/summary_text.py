@@ -48,6 +48,7 @@ def summary_lines(summary: Summary) -> list[str]:
         _sensors,
         _forces,
         _tension,
+        _flights,
         _vehicles,
         _reactions,
         verdict_lines,
@@ -79,7 +80,7 @@ def _head(summary: Summary) -> list[str]:
         ("structure", _joined(run["structure"], _with(length, "{:.6g} m"), _dofs(summary))),
         ("train", _joined(run["train"], _wheels(run))),
         ("speed", _speed(run)),
-        *(("and", _joined(other["train"], _speed(other))) for other in run.get("other_trains") or ()),
+        *(("and", _joined(other["train"], _wheels(other), _speed(other))) for other in run.get("other_trains") or ()),
         ("time", _time(run)),
         ("computed", _computed(summary["computation"])),
     ]
@@ -167,6 +168,25 @@ def _tension(summary: Summary) -> list[str]:
     return lines + ([f"  and {left} more"] if left else [])
 
 
+def _flights(summary: Summary) -> list[str]:
+    flights = summary.get("flights")
+    if not flights or not flights["count"]:
+        return []
+    shown = flights["longest"][:_ROWS]
+    count = flights["count"]
+    title = f"Wheels in the air: {count} flights, the longest" if count > 1 else "Wheels in the air: 1 flight"
+    lines = [title if count <= len(shown) else f"{title} {len(shown)}"]
+    for row in shown:
+        landing = row["closing_speed_m_per_s"]
+        end = "does not land" if landing is None else f"lands at {landing:.4g} m/s"
+        lines.append(
+            f"  wheel {row['contact']:<7}{row['start_s']:.5g} to {row['stop_s']:.5g} s, "
+            f"{row['start_position_m']:.3f} to {row['stop_position_m']:.3f} m, "
+            f"up to {1e3 * row['largest_gap_m']:.4g} mm, {end}"
+        )
+    return lines
+
+
 def _vehicles(summary: Summary) -> list[str]:
     rows = [
         [
@@ -247,7 +267,7 @@ def _dofs(summary: Summary) -> str:
 
 
 def _wheels(run: Mapping[str, Any]) -> str:
-    count = run["contacts"]
+    count = run.get("wheels", run.get("contacts")) - sum(o["wheels"] for o in run.get("other_trains") or ())
     return f"{count} wheel" if count == 1 else f"{count} wheels"
 
 

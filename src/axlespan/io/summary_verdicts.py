@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 # Units that people read, with the factor from SI.
-_SHOWN = {"m": ("mm", 1e3), "N": ("kN", 1e-3), "rad": ("mrad", 1e3), "": ("", 1.0)}
+_SHOWN = {"m": ("mm", 1e3), "N": ("kN", 1e-3), "rad": ("mrad", 1e3), "m/s": ("km/h", 3.6), "": ("", 1.0)}
 
 # What the source of a limit says that nobody has compared with the standard.
 _UNCHECKED = "check against the standard"
@@ -78,8 +78,10 @@ def _order(row: Mapping[str, Any]) -> tuple[int, float]:
 
 def _used(row: Mapping[str, Any]) -> str:
     used = row.get("utilization")
-    if row.get("limit") is None or used is None:
-        return "-" if row.get("limit") is None else ""
+    if row.get("limit") is None:
+        return "-"
+    if used is None:  # beyond all numbers
+        return "> 100" if row["outcome"] == "fail" else ""
     return f"{100.0 * used:.0f} %" if math.isfinite(used) and used < 100.0 else "> 100"
 
 

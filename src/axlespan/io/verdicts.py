@@ -44,6 +44,13 @@ CHECKS = (
         "energy that appears in a step, over the largest energy",
         "Look for very large or very small stiffnesses and masses",
     ),
+    Check(
+        "force_noise",
+        "clean forces",
+        0.1,
+        "contact force that alternates from step to step, over the static one",
+        "Leave alpha and footprint out, use a smaller time step, or contact: hertz; landings and kinks ring too",
+    ),
 )
 
 
@@ -55,7 +62,7 @@ def verdicts(checks: Mapping[str, Any]) -> list[dict[str, Any]]:
     >>> found = verdicts({"finite_values": True, "compatibility_residual": 1e-3, "tension_episodes": 0})
     >>> [(check["name"], check["verdict"]) for check in found]
     [('finite', 'pass'), ('compatibility', 'attention'), ('equilibrium', 'not checked'),
-     ('energy', 'not checked'), ('tension', 'pass')]
+     ('energy', 'not checked'), ('clean forces', 'not checked'), ('tension', 'pass')]
     """
     finite = checks.get("finite_values")
     found = [

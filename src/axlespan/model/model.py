@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
 
+from axlespan.card import Card, Shown, some
 from axlespan.elements.beam import BeamProperties
 from axlespan.errors import InputError
 from axlespan.model.damping import Damping, Rayleigh
@@ -55,8 +57,8 @@ class NodalLoad:
     history: Callable[[FloatArray], FloatArray] | None = None
 
 
-@dataclass(frozen=True, eq=False)
-class Model:
+@dataclass(frozen=True, eq=False, repr=False)
+class Model(Shown):
     """A model in the x-z plane (``plane=True``: components x, z, ry) or in space (all six).
 
     Models don't change: every ``with_…`` returns a new one.
@@ -446,6 +448,20 @@ class Model:
             return own
         return Rayleigh(self.damping.alpha + own.alpha, self.damping.beta + own.beta)
 
+    def card(self) -> Card:
+        """Return what is shown of it."""
+        kinds = Counter(type(part).__name__ for part in self.parts)
+        names = [name for part in self.parts if (name := getattr(part, "name", ""))]
+        facts = [
+            ("nodes", f"{len(self.points)}{_box(self.points)}"),
+            ("parts", some([f"{count} × {kind}" for kind, count in kinds.items()])),
+            ("named", some(list(dict.fromkeys(names)))),
+            ("supports", some([support.name for support in self.supports])),
+            ("damping", "none" if self.damping is None else repr(self.damping)),
+        ]
+        space = "in the x-z plane" if self.plane else "in space"
+        return Card(f"Model {space}", facts, "compile_model(model)")
+
 
 def _pairs(nodes: npt.ArrayLike) -> IntArray:
     pairs = np.asarray(nodes, dtype=np.int64).reshape(-1, 2)
@@ -456,3 +472,13 @@ def _pairs(nodes: npt.ArrayLike) -> IntArray:
             value=int(pairs[pairs[:, 0] == pairs[:, 1]][0, 0]),
         )
     return pairs
+
+
+def _box(points: FloatArray) -> str:
+    """Where nodes lie, in words."""
+    if not len(points):
+        return ""
+    low, high = points.min(axis=0), points.max(axis=0)
+    return "; " + ", ".join(
+        f"{axis} {a:g} to {b:g} m" for axis, a, b in zip("xyz", low, high, strict=True) if b > a
+    )

@@ -3,6 +3,7 @@
 matplotlib is imported here and nowhere else, so that computing does not wait for it.
 """
 
+from axlespan.plot.animation import animation
 from axlespan.plot.comparison import comparison
 from axlespan.plot.contact import contact_force
 from axlespan.plot.histories import acceleration, displacement, velocity
@@ -11,6 +12,7 @@ from axlespan.plot.standard import draw_figures, save, standard_figures
 
 __all__ = [
     "acceleration",
+    "animation",
     "comparison",
     "contact_force",
     "displacement",

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 
 from axlespan.errors import InputError
 from axlespan.plot.style import COLORS, axes_or_new, finish
-from axlespan.plot.thinning import thinned
+from axlespan.io.thinning import thinned
 
 _DASHES = ("-", (0, (5, 2)), (0, (1, 1.2)), (0, (7, 2, 1, 2)), (0, (3, 1.5)), (0, (9, 2)))
 

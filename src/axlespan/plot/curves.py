@@ -9,7 +9,7 @@ import numpy.typing as npt
 from matplotlib.axes import Axes
 
 from axlespan.plot.style import BAND, COLORS
-from axlespan.plot.thinning import band, thinned
+from axlespan.io.thinning import band, thinned
 
 FloatArray = npt.NDArray[np.float64]
 

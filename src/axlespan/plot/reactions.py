@@ -13,7 +13,7 @@ from axlespan.io.dof_units import is_rotation
 from axlespan.plot.curves import FEW
 from axlespan.plot.histories import inside
 from axlespan.plot.style import COLORS, axes_or_new, finish
-from axlespan.plot.thinning import thinned
+from axlespan.io.thinning import thinned
 
 # A reaction so much smaller than the largest is none.
 _NOTHING = 1e-9

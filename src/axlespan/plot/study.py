@@ -48,11 +48,20 @@ def over_speed(answers: Answers, quantity: str, ax: Axes | None = None) -> Axes:
         for row, curve in zip(table, curves.values(), strict=True):
             row[np.searchsorted(every, curve.speed)] = curve.value
         low, high = np.nanmin(table, axis=0), np.nanmax(table, axis=0)
-        ax.fill_between(_KMH * every, scale * low, scale * high, color=BAND, linewidth=0.0, label=f"all {len(trains)} trains")
+        ax.fill_between(
+            _KMH * every,
+            scale * low,
+            scale * high,
+            color=BAND,
+            linewidth=0.0,
+            label=f"all {len(trains)} trains",
+        )
     for color, train in zip(COLORS, trains, strict=False):
         curve = curves[train]
         marker = "o" if len(curve.speed) < 60 else ""
-        ax.plot(_KMH * curve.speed, scale * curve.value, color=color, label=train, marker=marker, markersize=2.5)
+        ax.plot(
+            _KMH * curve.speed, scale * curve.value, color=color, label=train, marker=marker, markersize=2.5
+        )
     _mark_resonances(ax, answers, trains[0] if trains else "")
     return finish(ax, "speed [km/h]", f"{what} [{unit}]")
 
@@ -110,7 +119,9 @@ def converging(answers: Answers, quantity: str, ax: Axes | None = None) -> Axes:
     what, unit, scale = label_of(quantity)
     values = np.asarray(answers.columns[quantity], dtype=np.float64)[answers.completed]
     counts, means, errors = convergence(values * scale)
-    ax.fill_between(counts, means - errors, means + errors, color=BAND, linewidth=0.0, label="± standard error")
+    ax.fill_between(
+        counts, means - errors, means + errors, color=BAND, linewidth=0.0, label="± standard error"
+    )
     ax.plot(counts, means, color=COLORS[0], label="mean of the first scenarios")
     ax.set_xscale("log")
     return finish(ax, "scenarios", f"{what} [{unit}]")

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from axlespan.plot.thinning import band_over
+from axlespan.io.thinning import band_over
 from axlespan.report.pack import Pack
 from axlespan.report.stored import Stored
 from axlespan.report.thinning import chosen_columns, rows_for

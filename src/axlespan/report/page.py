@@ -23,7 +23,8 @@ from axlespan.report.maps import maps
 from axlespan.report.pack import Pack
 from axlespan.report.panels import panels
 from axlespan.report.scene import scene
-from axlespan.report.shapes import Unit, units_of
+from axlespan.io.train_shapes import Unit
+from axlespan.report.shapes import units_of
 from axlespan.report.sketch import sketch
 from axlespan.report.space import space
 from axlespan.report.spectra import spectra

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from axlespan.io.dof_units import is_rotation
 from axlespan.report.pack import Pack
-from axlespan.report.shapes import LOW
+from axlespan.io.train_shapes import LOW
 from axlespan.report.stored import Stored
 from axlespan.report.thinning import chosen_columns, rows_for
 from axlespan.report.units import shown_unit

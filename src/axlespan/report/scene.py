@@ -11,7 +11,7 @@ import numpy.typing as npt
 from axlespan.io.dof_units import is_rotation
 from axlespan.io.drawing import Drawing
 from axlespan.report.pack import Pack
-from axlespan.report.shapes import Unit
+from axlespan.io.train_shapes import Unit
 from axlespan.report.stored import Stored
 
 FloatArray = npt.NDArray[np.float64]

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from axlespan.io.drawing import Drawing
-from axlespan.report.shapes import WHEEL_RADIUS, Unit
+from axlespan.io.train_shapes import WHEEL_RADIUS, Unit
 from axlespan.report.units import plain
 
 _WIDTH = 1000.0  # of the drawing, in its own units

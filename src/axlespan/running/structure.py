@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from axlespan.card import Card, Shown, some
 from axlespan.errors import InputError
 from axlespan.linalg.factor import NotPositiveDefinite, factorize
 from axlespan.model.dofs import nearest
@@ -25,8 +26,8 @@ DECK_LINE = "deck"
 RAIL_LINE = "rail"
 
 
-@dataclass(frozen=True, eq=False)
-class Structure:
+@dataclass(frozen=True, eq=False, repr=False)
+class Structure(Shown):
     """What vehicles cross: matrices with named d.o.f., and running lines over them.
 
     The paths of ``lines`` are in the system's independent d.o.f. (its ties eliminated).
@@ -98,3 +99,19 @@ class Structure:
                 fix="Support these degrees of freedom, or connect the part that they belong to",
             ) from error
         return True
+
+    def card(self) -> Card:
+        """Return what is shown of it."""
+        lines = [f"{name} {path.start:g} to {path.stop:g} m" for name, path in self.lines.items()]
+        masses = [
+            f"{axis} {self.system.total_mass(axis) / 1e3:.6g} t"
+            for axis in "xyz"
+            if axis in self.system.components
+        ]
+        facts = [
+            ("d.o.f.", f"{len(self.system.free)} free, {len(self.system.prescribed)} prescribed"),
+            ("lines", some(lines)),
+            ("mass", some(masses)),
+        ]
+        after = "asp.Crossing(structure, train, speed=250 / 3.6)"
+        return Card(f"Structure: {self.name}", facts, after)

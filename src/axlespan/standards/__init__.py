@@ -3,7 +3,7 @@
 from axlespan.standards.assess import assess
 from axlespan.standards.assessment import CHECKS, Assessment
 from axlespan.standards.bridge_facts import BridgeFacts, bridge_facts
-from axlespan.standards.verdict import FROM_MEMORY, Verdict, overall, worst
+from axlespan.standards.verdict import FROM_MEMORY, Verdict, envelope, overall, worst
 
 __all__ = [
     "CHECKS",
@@ -13,6 +13,7 @@ __all__ = [
     "Verdict",
     "assess",
     "bridge_facts",
+    "envelope",
     "overall",
     "worst",
 ]

@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 from axlespan.interaction.crossing import Crossing
 from axlespan.interaction.result import Result
-from axlespan.standards import bridge_checks, deck_checks, ride_checks, wheel_checks
+from axlespan.standards import bridge_checks, deck_checks, moment_checks, ride_checks, wheel_checks
 from axlespan.standards.assessment import CHECKS, Assessment
 from axlespan.standards.bridge_facts import BridgeFacts, bridge_facts
 from axlespan.standards.given import Given
@@ -24,9 +24,11 @@ _WITH_EFFECTS = MappingProxyType(
 _CHECKS: Mapping[str, Check] = MappingProxyType(
     {
         "dynamic_analysis": bridge_checks.dynamic_analysis,
+        "critical_speed": bridge_checks.critical_speed,
         "damping": bridge_checks.damping,
         "deck_acceleration": deck_checks.deck_acceleration,
         "deflection": deck_checks.deflection,
+        "dynamic_moment": moment_checks.dynamic_moment,
         "end_rotation": deck_checks.end_rotation,
         "end_offset": deck_checks.end_offset,
         "twist": deck_checks.twist,

@@ -13,11 +13,13 @@ from axlespan.standards.limits import LIMITS
 #: Checks by their names in case files, in the order of their verdicts.
 CHECKS = (
     "dynamic_analysis",
+    "critical_speed",
     "damping",
     "deck_acceleration",
     "deflection",
     "lm71_deflection",
     "dynamic_effect",
+    "dynamic_moment",
     "end_rotation",
     "end_offset",
     "twist",
@@ -63,6 +65,8 @@ class Assessment:
         Of the track: Φ2 and φ''/2, or Φ3 and φ''.
     overhang : float, optional
         From the bearing to the end of the deck [m], for the vertical offset there.
+    coach_length : float, optional
+        Regular distance of the train's axle groups [m]; that of equal vehicles when left out.
     alpha : float
         Classification factor α of load model 71.
     comfort : {"very-good", "good", "acceptable"}
@@ -86,6 +90,7 @@ class Assessment:
     torsional_frequency: float | None = None
     maintenance: str = "careful"
     overhang: float | None = None
+    coach_length: float | None = None
     alpha: float = 1.0
     comfort: str = "very-good"
     limits: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
@@ -99,7 +104,8 @@ class Assessment:
             _require_word(self.bridge_type, BRIDGE_TYPES, "bridge_type")
         for number, check in enumerate(self.checks):
             _require_word(check, CHECKS, f"checks.{number}")
-        for name in ("line_speed", "determinant_length", "first_frequency", "torsional_frequency", "alpha"):
+        frequencies = ("first_frequency", "torsional_frequency")
+        for name in ("line_speed", "determinant_length", "coach_length", "alpha", *frequencies):
             _require_positive(getattr(self, name), name)
         for number, span in enumerate(self.spans or ()):
             _require_positive(span, f"spans.{number}")

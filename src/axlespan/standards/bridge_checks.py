@@ -19,13 +19,23 @@ from axlespan.standards.bridge_values import (
     structural_damping,
 )
 from axlespan.standards.deck_checks import live_deflection
-from axlespan.standards.dynamic_analysis import FLOW_CHART, load_model, need_of_dynamic_analysis
+from axlespan.standards.dynamic_analysis import (
+    FLOW_CHART,
+    LOWEST_SPEED,
+    OVERSPEED,
+    SPEEDS,
+    load_model,
+    need_of_dynamic_analysis,
+    resonance_speeds,
+)
 from axlespan.standards.given import Given
 from axlespan.standards.influence import deflection_lines
 from axlespan.standards.limits import limit_of
 from axlespan.standards.verdict import REPORTED, Verdict, judged, not_assessed
 
 FloatArray = npt.NDArray[np.float64]
+
+_NO_EFFECTS = "the static deflections cannot be computed"
 
 # Damping ratios are compared to so many digits: they come from eigenvectors.
 _DIGITS = 9
@@ -53,17 +63,13 @@ def span_effects(given: Given) -> list[SpanEffects]:
         return []
     starts, spans = np.array(given.facts.starts), np.array(given.facts.spans)
     lines = deflection_lines(given.crossing.structure, starts + 0.5 * spans)
-    behind = [
-        item.behind + point.behind for item in given.crossing.placements for point in item.vehicle.contacts
-    ]
-    if given.crossing.runs[0].course.direction < 0:
-        behind = [max(behind) - distance for distance in behind]
+    behind = wheels_behind(given)
     alpha, found = given.assessment.alpha, []
     for line, start, span in zip(lines, starts, spans, strict=True):
         model = lm71.lm71_effect(line, sign=-1.0, alpha=alpha)
         if given.facts.continuous:
             model = max(model, lm71.sw0_effect(line, sign=-1.0, alpha=alpha))
-        train = lm71.train_effect(line, given.static_forces, np.array(behind), sign=-1.0)
+        train = lm71.train_effect(line, given.static_forces, behind, sign=-1.0)
         found.append(SpanEffects(float(start + 0.5 * span), float(span), model, train))
     return found
 
@@ -101,10 +107,46 @@ def dynamic_analysis(given: Given) -> list[Verdict]:
         words += f"; limits of n0 are {limits[0]:.3g} to {limits[1]:.3g} Hz"
     if need.required:
         words += f"; load model {load_model(facts.spans, simple=facts.simple and not facts.continuous)}"
+        words += f", speeds from {3.6 * LOWEST_SPEED:.0f} to {3.6 * OVERSPEED * speed:.0f} km/h"
     verdict = Verdict(
         check, clause, f"{quantity}; n0", REPORTED, n0, None, "Hz", source=FLOW_CHART, note=words
     )
     return [verdict]
+
+
+def critical_speed(given: Given) -> list[Verdict]:
+    """Resonance speeds f_j d / i up to 1.2 times the line speed; the one nearest to the run's is the value."""
+    check, clause = "critical_speed", "EN 1991-2 6.4.6.2"
+    quantity = "resonance speed nearest to that of the run"
+    distance = given.assessment.coach_length or _regular_distance(given)
+    if not given.facts.frequencies:
+        return [not_assessed(check, clause, quantity, "the frequencies of vertical bending are not known")]
+    if distance is None:
+        reason = "the train has no regular distance of three equal vehicles or more: give coach_length"
+        return [not_assessed(check, clause, quantity, reason, source=SPEEDS)]
+    highest = OVERSPEED * max(given.assessment.line_speed or 0.0, given.speed)
+    found = resonance_speeds(given.facts.frequencies, distance, highest=highest)
+    if not found:
+        reason = f"there is none up to {3.6 * highest:.0f} km/h"
+        return [not_assessed(check, clause, quantity, reason, source=SPEEDS)]
+    nearest, mode, order = min(found, key=lambda item: abs(item[0] - given.speed))
+    fast = [f"{3.6 * speed:.0f} (f{j} d/{i})" for speed, j, i in found if speed >= LOWEST_SPEED]
+    note = f"f{mode} d/{order} with d = {distance:.4g} m; the run has {3.6 * given.speed:.4g} km/h"
+    if fast:
+        note += f"; from 144 km/h on: {', '.join(fast)} km/h"
+    return [Verdict(check, clause, quantity, REPORTED, nearest, None, "m/s", source=SPEEDS, note=note)]
+
+
+def _regular_distance(given: Given) -> float | None:
+    """Distance [m] from vehicle to vehicle, if most of at least three of the first train have the same."""
+    if given.crossing is None:
+        return None
+    steps = np.diff([item.behind for item in given.crossing.runs[0].train.placements]).round(3)
+    if len(steps) < 2:
+        return None
+    values, counts = np.unique(steps, return_counts=True)
+    most = int(np.argmax(counts))
+    return float(values[most]) if 2 * counts[most] > len(steps) and values[most] > 0.0 else None
 
 
 def damping(given: Given) -> list[Verdict]:
@@ -142,12 +184,12 @@ def lm71_deflection(given: Given, effects: Sequence[SpanEffects]) -> list[Verdic
     """Deflection under load model 71 with its dynamic factor, against L/600."""
     check, clause = "lm71_deflection", "EN 1990 A2.4.4.2.3"
     quantity = "vertical deflection under Φ × LM71"
-    reason = _not_possible(given, effects)
+    reason = not_possible(given) or ("" if effects else _NO_EFFECTS)
     if reason:
         return [not_assessed(check, clause, quantity, reason, source=lm71.SOURCE)]
     limit = limit_of("deflection_ratio", given.assessment)
     assert limit.value is not None
-    factor, name = _static_factor(given)
+    factor, name = static_factor(given)
     worst = max(effects, key=lambda effect: effect.lm71 / effect.span)
     value = factor * worst.lm71
     ratio = worst.span / value if value > 0.0 else float("inf")
@@ -170,7 +212,7 @@ def dynamic_effect(given: Given, effects: Sequence[SpanEffects]) -> list[Verdict
     """(1 + φ'_dyn + φ''/2) times the static effect of the run's train over Φ × LM71, by midspan deflections."""
     check, clause = "dynamic_effect", "EN 1991-2 6.4.6.5"
     quantity = "(1 + φ'_dyn + φ''/2) × train over Φ × LM71, midspan deflections"
-    reason = _not_possible(given, effects)
+    reason = not_possible(given) or ("" if effects else _NO_EFFECTS)
     if not reason and not given.result.line_displacement.size:
         reason = "the deck was not recorded: write line: 41 under output"
     if not reason and not all(effect.train > 0.0 and effect.lm71 > 0.0 for effect in effects):
@@ -178,11 +220,10 @@ def dynamic_effect(given: Given, effects: Sequence[SpanEffects]) -> list[Verdict
     if reason:
         return [not_assessed(check, clause, quantity, reason, source=lm71.SOURCE)]
     moved, at = live_deflection(given), given.result.line_position
-    factor, name = _static_factor(given)
+    factor, name = static_factor(given)
     n0, length = given.facts.first_frequency, given.facts.determinant_length
     assert n0 is not None and length is not None
-    share = 0.5 if given.assessment.maintenance == "careful" else 1.0
-    second = share * dynamic_factors.phi_double_dash(given.speed, length, n0)
+    second, share_words = added_share(given)
     best: tuple[float, SpanEffects, float, int] | None = None
     for effect in effects:
         history = -_at(moved, at, effect.middle)
@@ -195,12 +236,11 @@ def dynamic_effect(given: Given, effects: Sequence[SpanEffects]) -> list[Verdict
     ratio, effect, first, row = best
     limit = limit_of(check, given.assessment)
     theory = dynamic_factors.phi_dash(given.speed, length, n0)
-    share_words = "φ''/2" if share == 0.5 else "φ''"
     return [
         judged(
             check,
             clause,
-            quantity if share == 0.5 else quantity.replace("φ''/2", "φ''"),
+            quantity.replace("φ''/2", share_words),
             ratio,
             limit.value,
             "",
@@ -213,6 +253,15 @@ def dynamic_effect(given: Given, effects: Sequence[SpanEffects]) -> list[Verdict
     ]
 
 
+def wheels_behind(given: Given) -> FloatArray:
+    """Distance (n_contact,) of each wheel behind the foremost one [m], of one train."""
+    assert given.crossing is not None
+    items = given.crossing.placements
+    behind = np.array([item.behind + point.behind for item in items for point in item.vehicle.contacts])
+    backward = given.crossing.runs[0].course.direction < 0
+    return np.asarray(behind.max() - behind) if backward else behind
+
+
 def effects_of(given: Given) -> list[SpanEffects]:
     """Static effects; none where the structure cannot be solved."""
     try:
@@ -221,7 +270,16 @@ def effects_of(given: Given) -> list[SpanEffects]:
         return []
 
 
-def _static_factor(given: Given) -> tuple[float, str]:
+def added_share(given: Given) -> tuple[float, str]:
+    """φ''/2 for carefully maintained track, else φ'' [-], and its name."""
+    n0, length = given.facts.first_frequency, given.facts.determinant_length
+    assert n0 is not None and length is not None
+    second = dynamic_factors.phi_double_dash(given.speed, length, n0)
+    return (0.5 * second, "φ''/2") if given.assessment.maintenance == "careful" else (second, "φ''")
+
+
+def static_factor(given: Given) -> tuple[float, str]:
+    """Φ2 for carefully maintained track, else Φ3 [-], and its name."""
     length = given.facts.determinant_length
     assert length is not None
     if given.assessment.maintenance == "careful":
@@ -229,7 +287,8 @@ def _static_factor(given: Given) -> tuple[float, str]:
     return dynamic_factors.phi3(length), "Φ3"
 
 
-def _not_possible(given: Given, effects: Sequence[SpanEffects]) -> str:
+def not_possible(given: Given) -> str:
+    """Why static effects cannot be known; empty if they can."""
     if given.crossing is None:
         return "the structure is not known, only its result"
     if len(given.crossing.runs) > 1:
@@ -240,7 +299,7 @@ def _not_possible(given: Given, effects: Sequence[SpanEffects]) -> str:
         return "the first frequency is not known: give first_frequency"
     if not np.all(np.isfinite(given.static_forces)):
         return "the static wheel forces are not known"
-    return "" if effects else "the static deflections are not known"
+    return ""
 
 
 def _at(table: FloatArray, positions: FloatArray, place: float) -> FloatArray:

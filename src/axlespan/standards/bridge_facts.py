@@ -7,7 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from axlespan.errors import AnalysisError, InputError
 from axlespan.interaction.line_points import deck_line
+from axlespan.linalg.factor import NotPositiveDefinite
 from axlespan.model.modal import modes_of
 from axlespan.model.parts import BarPart, BeamPart
 from axlespan.running.structure import Structure
@@ -17,8 +19,8 @@ from axlespan.standards.dynamic_factors import continuous_determinant_length
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-# Modes that are looked through for three that move the deck up and down.
-_MODES = 12
+# Modes that are looked through for three that move the deck up and down; more if there are fewer among them.
+_MODES = (12, 40)
 # A weight so close to one belongs to the d.o.f. alone; places beside a break, as a share of the line.
 _CLOSE, _BESIDE = 1e-6, 1e-9
 # Beams and bars with at least this share of their length upward are columns.
@@ -106,11 +108,22 @@ def _held(structure: Structure) -> IntArray:
     system, path = structure.system, deck_line(structure)
     vertical = np.array([system.components[i] == "z" for i in system.independent], dtype=bool)
     grounds = system.prescribed[vertical[system.prescribed]]
-    elsewhere = np.setdiff1d(grounds, path.path_dofs)
-    joined = system.stiffness[elsewhere].tocoo().col if len(elsewhere) else np.zeros(0, dtype=np.int64)
-    held = np.concatenate([grounds, np.asarray(joined, dtype=np.int64), _on_columns(structure)])
+    held = np.concatenate([grounds, _on_springs(structure, grounds), _on_columns(structure)])
     held = np.intersect1d(held, path.path_dofs)
     return np.asarray(held[vertical[held]], dtype=np.int64)
+
+
+def _on_springs(structure: Structure, grounds: IntArray) -> IntArray:
+    """Independent d.o.f. that a spring alone joins to a prescribed one off the line: k beside it, -k across."""
+    system, path = structure.system, deck_line(structure)
+    found = []
+    for ground in np.setdiff1d(grounds, path.path_dofs):
+        row = system.stiffness[[int(ground)]].tocoo()
+        other = (row.col != ground) & (row.data != 0.0)
+        own = float(row.data[row.col == ground].sum())
+        if np.count_nonzero(other) == 1 and abs(float(row.data[other][0]) + own) <= _CLOSE * own:
+            found.append(int(row.col[other][0]))
+    return np.array(found, dtype=np.int64)
 
 
 def _on_columns(structure: Structure) -> IntArray:
@@ -134,14 +147,19 @@ def _on_columns(structure: Structure) -> IntArray:
 def _vertical_modes(structure: Structure) -> tuple[tuple[float, ...], float | None]:
     """Three lowest frequencies [Hz] of modes that move the deck's line vertically, and the first's damping."""
     system, path = structure.system, deck_line(structure)
-    number = min(_MODES, max(1, len(system.free) - 1))
-    modes = modes_of(system, number if len(system.free) > _MODES else None)
     places = np.linspace(path.start, path.stop, 201)
     rows = path.rows(places, system.size)[:, system.free]
-    motion = np.abs(np.asarray(rows @ modes.modes.shapes)).max(axis=0)
     moves = np.array([system.components[int(system.independent[i])] in ("x", "y", "z") for i in system.free])
-    most = np.abs(modes.modes.shapes[moves]).max(axis=0, initial=0.0)
-    chosen = np.flatnonzero((motion >= _MOVES * most) & (modes.modes.frequencies > 0.0))[:3]
+    for number in _MODES:
+        try:
+            modes = modes_of(system, min(number, len(system.free)))
+        except (AnalysisError, InputError, NotPositiveDefinite):
+            return (), None
+        motion = np.abs(np.asarray(rows @ modes.modes.shapes)).max(axis=0)
+        most = np.abs(modes.modes.shapes[moves]).max(axis=0, initial=0.0)
+        chosen = np.flatnonzero((motion >= _MOVES * most) & (modes.modes.frequencies > 0.0))[:3]
+        if len(chosen) == 3 or number >= len(system.free):
+            break
     if not len(chosen):
         return (), None
     return tuple(modes.modes.frequencies[chosen].tolist()), float(modes.damping_ratio[chosen[0]])

@@ -60,25 +60,22 @@ def need_of_dynamic_analysis(
     first_frequency, torsional_frequency : float
         n0 and n_T [Hz]; n_T None where it is not known.
     """
-    path: list[str] = []
-    if line_speed <= 200.0 / 3.6 * (1.0 + 1e-12):
-        path.append("line speed up to 200 km/h")
-        if continuous:
-            return Need(False, (*path, "continuous bridge"))
-        path.append("not continuous")
-        return _by_frequency(path, span, first_frequency) or Need(None, (*path, _no_limits(span)))
-    path.append("line speed above 200 km/h")
-    if not simple:
+    slow = line_speed <= 200.0 / 3.6 * (1.0 + 1e-12)
+    path = [f"line speed {'up to' if slow else 'above'} 200 km/h"]
+    if slow and continuous:
+        return Need(False, (*path, "continuous bridge"))
+    if not slow and not simple:
         return Need(True, (*path, "no simple structure"))
-    path.append("simple structure")
-    if span >= 40.0:
-        path.append("span from 40 m on")
-        found = _by_frequency(path, span, first_frequency)
-        if found is not None and found.required is False:
-            return found
-        path.append("n0 outside its limits" if found is not None else _no_limits(span))
-    else:
-        path.append("span below 40 m")
+    path += (
+        ["not continuous"]
+        if slow
+        else ["simple structure", f"span {'from' if span >= 40.0 else 'below'} 40 m"]
+    )
+    if slow or span >= 40.0:
+        words, inside = _by_frequency(span, first_frequency)
+        path.append(words)
+        if inside:
+            return Need(False, tuple(path))
     if torsional_frequency is None:
         return Need(None, (*path, "torsional frequency not known"))
     if torsional_frequency <= 1.2 * first_frequency:
@@ -86,17 +83,14 @@ def need_of_dynamic_analysis(
     return Need(None, (*path, "n_T above 1.2 n0", "tables F.1 and F.2 of v/n0 are not available here"))
 
 
-def _by_frequency(path: Sequence[str], span: float, first_frequency: float) -> Need | None:
+def _by_frequency(span: float, first_frequency: float) -> tuple[str, bool]:
+    """What is to be said of n0 and its limits, and whether it is within them."""
     limits = frequency_limits(span)
     if limits is None:
-        return None
+        return f"no limits of n0 for a span of {span:g} m", False
     inside = limits[0] <= first_frequency <= limits[1]
-    text = f"n0 = {first_frequency:.3g} Hz {'within' if inside else 'outside'} {limits[0]:.3g} to {limits[1]:.3g} Hz"
-    return Need(not inside, (*path, text))
-
-
-def _no_limits(span: float) -> str:
-    return f"no limits of n0 for a span of {span:g} m"
+    place = "within" if inside else "outside"
+    return f"n0 = {first_frequency:.3g} Hz {place} {limits[0]:.3g} to {limits[1]:.3g} Hz", inside
 
 
 def load_model(spans: Sequence[float], *, simple: bool) -> str:

@@ -59,7 +59,7 @@ def up_to(signal: FloatArray, time_step: float, limit: float) -> FloatArray:
 def low_pass(signal: FloatArray, time_step: float, frequency: float) -> FloatArray:
     """Signals (n_time, ...) through a Butterworth filter, 3 dB down at a frequency [Hz], without phase.
 
-    Two passes of second order, each 1.5 dB down there. Ends are continued by their own mirror image.
+    Two passes of second order, each 1.5 dB down there. Ends are continued by point reflection.
 
     Raises
     ------

@@ -116,6 +116,15 @@ def overall(verdicts: Iterable[Verdict]) -> str:
     return FAIL if FAIL in outcomes else PASS if PASS in outcomes else NOT_ASSESSED
 
 
+def envelope(runs: Iterable[Iterable[Verdict]]) -> tuple[Verdict, ...]:
+    """The worst verdict on each check over several runs, such as all speeds of a sweep; see :func:`worst`."""
+    by_check: dict[str, list[Verdict]] = {}
+    for run in runs:
+        for verdict in run:
+            by_check.setdefault(verdict.check, []).append(verdict)
+    return tuple(worst(verdicts) for verdicts in by_check.values())
+
+
 def worst(verdicts: Iterable[Verdict]) -> Verdict:
     """The verdict of several runs on one check: the one with the highest utilization.
 

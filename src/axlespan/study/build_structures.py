@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from typing import Any
 
-from axlespan.bridges import Column, Station, continuous_beam, frame, simple_span, simple_spans
+from axlespan.bridges import (
+    Column,
+    GridBeam,
+    Station,
+    beam_grid,
+    continuous_beam,
+    frame,
+    simple_span,
+    simple_spans,
+)
 from axlespan.bridges.condition import Damage, in_condition
 from axlespan.running.structure import Structure
 from axlespan.study import case_structure
@@ -13,6 +22,7 @@ from axlespan.study.build_mesh import structure_of_mesh
 from axlespan.study.build_supports import damping_of, supports_of_beams
 from axlespan.study.build_track import laid_on, structure_of_track
 from axlespan.study.built import BuiltStructure
+from axlespan.study.case_grid import BeamGrid
 from axlespan.study.case_imported import MeshStructure
 from axlespan.study.case_track import TrackStructure
 
@@ -33,6 +43,8 @@ def structure_of(case: case_structure.Structure) -> BuiltStructure:
         return laid_on(_as_it_is(_simple_spans(case), case), case.track)
     if isinstance(case, case_structure.Frame):
         return laid_on(_as_it_is(_frame(case), case), case.track)
+    if isinstance(case, BeamGrid):
+        return laid_on(BuiltStructure(_grid(case)), case.track)
     if isinstance(case, TrackStructure):
         return structure_of_track(case)
     if isinstance(case, MeshStructure):
@@ -117,6 +129,32 @@ def _spans(
         "damping": damping_of(case.damping),
         "stations": stations if case.stations is not None else None,
     }
+
+
+def _grid(case: BeamGrid) -> Structure:
+    sections = [
+        GridBeam(
+            section.second_moment, section.torsion_constant, section.area, section.mass_per_length or 0.0
+        )
+        for section in (case.girder, case.cross_beam, case.end_beam or case.cross_beam)
+    ]
+    girder, cross_beam, end_beam = sections
+    return beam_grid(
+        length=case.length,
+        girders=case.girders,
+        girder=girder,
+        cross_beam=cross_beam,
+        end_beam=end_beam,
+        youngs_modulus=case.youngs_modulus,
+        poisson_ratio=case.poisson_ratio,
+        elements=case.elements,
+        cross_beams=case.cross_beams,
+        skew=case.skew,
+        track_centers=case.track_centers,
+        bearing_stiffness=case.bearings.stiffness if case.bearings else None,
+        bearing_damping=case.bearings.damping if case.bearings else None,
+        damping=damping_of(case.damping),
+    )
 
 
 def _given(value: float | None) -> float:

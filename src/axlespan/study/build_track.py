@@ -81,7 +81,13 @@ def structure_of_track(case: case_track.TrackStructure) -> BuiltStructure:
 
 
 def _zones(case: case_track.BallastedTrack | case_track.SlabTrack) -> list[Zone]:
-    return [Zone(zone.from_, zone.to, zone.factor, zone.layer) for zone in case.zones]
+    return [Zone(zone.from_, zone.to, _pair(zone.factor), zone.layer) for zone in case.zones]
+
+
+def _pair(factor: float | tuple[float, ...]) -> tuple[float, float]:
+    """Factors at both ends."""
+    first, last = factor if isinstance(factor, tuple) else (factor, factor)
+    return first, last
 
 
 def _facts(structure: Structure, track: Track) -> list[str]:

@@ -90,6 +90,8 @@ class Assessment(Part):
     """Of the track."""
     overhang: Distance | None = None
     """From the bearing to the end of the deck."""
+    coach_length: SpanLength | None = None
+    """Regular distance of the train's axle groups; that of equal vehicles when left out."""
     alpha: Factor = 1.0
     """Classification factor of load model 71."""
     comfort: Annotated[str, OneOf(COMFORT_LEVELS)] = "very-good"

@@ -9,16 +9,16 @@ from pydantic import BeforeValidator, Field, model_validator
 from axlespan.errors import InputError
 from axlespan.study.case_condition import DamagedZone, Temperature
 from axlespan.study.case_damping import StructuralDamping
+from axlespan.study.case_grid import BeamGrid
 from axlespan.study.case_imported import MeshStructure
 from axlespan.study.case_matrices import MatricesStructure
-from axlespan.study.case_support import Springs, Support
+from axlespan.study.case_support import Bearing, Springs, Support
 from axlespan.study.case_track import Track, TrackStructure
 from axlespan.study.checks import OneOf, Part
 from axlespan.study.faults import InputErrors
 from axlespan.study.kinds import Kinds, tag
 from axlespan.study.quantities import (
     Area,
-    Dashpot,
     Elements,
     Length,
     MassPerLength,
@@ -26,7 +26,6 @@ from axlespan.study.quantities import (
     PoissonRatio,
     SecondMoment,
     SpanLength,
-    Stiffness,
 )
 from axlespan.units import LENGTH, show
 
@@ -185,15 +184,6 @@ class ContinuousBeam(_Spans):
         return self
 
 
-class Bearing(Part):
-    """A bearing that gives way."""
-
-    stiffness: Annotated[Stiffness, Field(examples=["2 GN/m"])]
-    """Vertical stiffness."""
-    damping: Dashpot | None = None
-    """Vertical dashpot beside it."""
-
-
 class SimpleSpans(_Spans):
     """Simply supported decks one behind the other, each on its own bearings."""
 
@@ -290,7 +280,7 @@ def _check_supports(supports: tuple[Support, ...] | None, length: float) -> None
 
 KINDS = Kinds(
     "structure",
-    ("simple-span", "continuous-beam", "mesh", "matrices", "simple-spans", "frame", "track"),
+    ("simple-span", "continuous-beam", "mesh", "matrices", "simple-spans", "frame", "beam-grid", "track"),
     "{kind: simple-span, length: 25 m, ...}",
 )
 Structure = Annotated[
@@ -300,6 +290,7 @@ Structure = Annotated[
     | Annotated[MatricesStructure, tag("matrices")]
     | Annotated[SimpleSpans, tag("simple-spans")]
     | Annotated[Frame, tag("frame")]
+    | Annotated[BeamGrid, tag("beam-grid")]
     | Annotated[TrackStructure, tag("track")],
     KINDS.discriminator(),
     BeforeValidator(KINDS.checked),

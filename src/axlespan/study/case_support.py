@@ -174,3 +174,12 @@ class Support(Held):
 
     at: Annotated[float | str, Location(), Field(examples=["0 m"])]
     """Position along the structure, or the name of a node (set) of a mesh."""
+
+
+class Bearing(Part):
+    """A bearing that gives way."""
+
+    stiffness: Annotated[Stiffness, Field(examples=["2 GN/m"])]
+    """Vertical stiffness."""
+    damping: Dashpot | None = None
+    """Vertical dashpot beside it."""

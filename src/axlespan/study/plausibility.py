@@ -74,10 +74,11 @@ def _checks(annotation: Any) -> Iterator[Any]:
 
 
 def _fast(case: Case, source: Source) -> Iterator[InputError]:
-    speed = case.crossing.speed
-    if speed is not None and speed > FASTEST_LINE and not _has_unit(source, "crossing.speed"):
-        rule = f"is taken as {speed:g} m/s, which is {units.show(speed, units.SPEED)}"
-        yield source.blame("crossing.speed", rule, f"Write {speed:g} km/h if that is meant")
+    others = ((f"other_trains.{n}.speed", other.speed) for n, other in enumerate(case.other_trains))
+    for path, speed in (("crossing.speed", case.crossing.speed), *others):
+        if speed is not None and speed > FASTEST_LINE and not _has_unit(source, path):
+            rule = f"is taken as {speed:g} m/s, which is {units.show(speed, units.SPEED)}"
+            yield source.blame(path, rule, f"Write {speed:g} km/h if that is meant")
 
 
 def _sagging(case: Case, source: Source) -> Iterator[tuple[InputError, bool]]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from axlespan.card import Card, Shown, some
 from axlespan.errors import InputError
 from axlespan.model.materials import require_positive
 from axlespan.vehicles.vehicle import GRAVITY, ContactPoint, Vehicle
@@ -26,8 +27,8 @@ class Placement:
     behind: float
 
 
-@dataclass(frozen=True, eq=False)
-class Train:
+@dataclass(frozen=True, eq=False, repr=False)
+class Train(Shown):
     """Vehicles in the order from the head; the first wheel of the first one is the head of the train."""
 
     placements: tuple[Placement, ...]
@@ -204,3 +205,15 @@ class Train:
             field="train",
             fix="Look at spacing, gap and offset: vehicles must not overlap",
         )
+
+    def card(self) -> Card:
+        """Return what is shown of it."""
+        forces = self.static_forces()
+        kinds = list(dict.fromkeys(item.vehicle.name for item in self.placements))
+        facts = [
+            ("vehicles", f"{len(self.placements)}: {some(kinds)}"),
+            ("wheels", f"{len(forces)}, {self.wheelbase:g} m from the first to the last"),
+            ("static forces", f"{forces.min() / 1e3:.5g} to {forces.max() / 1e3:.5g} kN"),
+            ("weight", f"{forces.sum() / 1e3:.6g} kN"),
+        ]
+        return Card(f"Train: {self.name}", facts, "asp.Crossing(bridge, train, speed=250 / 3.6)")

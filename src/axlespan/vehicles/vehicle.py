@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
 
+from axlespan.card import Card, Shown, some
 from axlespan.errors import InputError
 from axlespan.linalg.eigen import lowest_modes
 from axlespan.linalg.factor import NotPositiveDefinite, factorize
@@ -25,6 +26,9 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 GRAVITY = 9.81  # [m/s^2]
+
+# Vehicles with more d.o.f. than this tell their 40 lowest frequencies only.
+_ALL_MODES_UP_TO = 400
 
 #: Names of the running lines of the left and the right wheels of vehicles in space.
 LEFT, RIGHT = "left", "right"
@@ -52,8 +56,8 @@ class ContactPoint:
     radius: float | None = None  # rolling radius [m], where the contact has a compliance of its own
 
 
-@dataclass(frozen=True, eq=False)
-class Vehicle:
+@dataclass(frozen=True, eq=False, repr=False)
+class Vehicle(Shown):
     """A vehicle, as a system with contact points.
 
     Its displacements are counted from its static position on level ground. A vehicle without a
@@ -66,8 +70,12 @@ class Vehicle:
     length: float | None = None  # over buffers [m], for drawings and overlaps
     facts: Mapping[str, float] = field(default_factory=dict)
     is_multibody: bool = True  # of rigid bodies: all its periods matter; a mesh has far shorter ones
-    bodies: Mapping[str, float] = field(default_factory=dict)  # centers behind the first wheel [m], for drawings
-    overhang: float | None = None  # from the front buffer to the first wheel [m]; half of what is left if None
+    bodies: Mapping[str, float] = field(
+        default_factory=dict
+    )  # centers behind the first wheel [m], for drawings
+    overhang: float | None = (
+        None  # from the front buffer to the first wheel [m]; half of what is left if None
+    )
 
     def __post_init__(self) -> None:
         if not self.contacts:
@@ -175,7 +183,9 @@ class Vehicle:
         count = int(np.count_nonzero(mass.diagonal()))
         if count == 0:
             return np.empty(0)
-        return lowest_modes(stiffness, mass, count if self.is_multibody else min(count, 40)).frequencies
+        if not self.is_multibody or len(rest) > _ALL_MODES_UP_TO:
+            count = min(count, 40)
+        return lowest_modes(stiffness, mass, count).frequencies
 
     @property
     def total_mass(self) -> float:
@@ -195,7 +205,9 @@ class Vehicle:
         if self.system is None:
             raise InputError("has no bodies that could be loaded", field="loads", value=self.name)
         heights = {
-            name.removesuffix(".height"): value for name, value in self.facts.items() if name.endswith(".height")
+            name.removesuffix(".height"): value
+            for name, value in self.facts.items()
+            if name.endswith(".height")
         }
         return replace(self, system=self.system.with_loads(Load(load_vector(self.system, loads, heights))))
 
@@ -241,7 +253,7 @@ class Vehicle:
         ``left`` and ``right`` change sides.
         """
         last = self.wheelbase
-        sides = {"left": "right", "right": "left"}
+        sides = {LEFT: RIGHT, RIGHT: LEFT}
         if {point.line for point in self.contacts} != set(sides):
             sides = {}
         turned = sorted(
@@ -274,6 +286,19 @@ class Vehicle:
     def rear_overhang(self) -> float:
         """From the last wheel to the rear buffer [m]; zero if the length is not known."""
         return 0.0 if self.length is None else self.length - self.wheelbase - self.front_overhang
+
+    def card(self) -> Card:
+        """Return what is shown of it."""
+        forces = [f"{force / 1e3:.5g}" for force in self.static_forces()]
+        frequencies = [f"{frequency:.3g}" for frequency in self.frequencies()]
+        facts = [
+            ("wheels", some([f"{point.name} at {point.behind:g} m" for point in self.contacts])),
+            ("static forces", f"{some(forces)} kN"),
+            ("frequencies", f"{some(frequencies)} Hz" if frequencies else "none: it moves with the line"),
+        ]
+        if self.system is not None:
+            facts.append(("d.o.f.", some([self.system.free_name(i) for i in range(len(self.system.free))])))
+        return Card(f"Vehicle: {self.name}", facts, "asp.Train.of(vehicle, count=8, spacing=24.775)")
 
 
 def _rank(contacts: tuple[ContactPoint, ...], name: str) -> int:

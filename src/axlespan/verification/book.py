@@ -8,13 +8,14 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 
 from axlespan.errors import InputError
-from axlespan.verification import beams, crossings, forces, methods, solids, supports, track, wheels
+from axlespan.verification import beams, crossings, forces, methods, solids, supports, track, trains, wheels
 from axlespan.verification.case import Case, Row
 
 #: All cases, theme by theme. A new theme is a module with a tuple ``CASES``, named here.
 CASES: tuple[Case, ...] = (
     *crossings.CASES,
     *forces.CASES,
+    *trains.CASES,
     *wheels.CASES,
     *supports.CASES,
     *track.CASES,

@@ -92,7 +92,11 @@ class Answers:
     @property
     def trains(self) -> list[str]:
         """Names of the trains, in the order of the scenarios."""
-        return list(dict.fromkeys(self.columns["train_name"][self.completed].tolist())) if len(self.columns["id"]) else []
+        return (
+            list(dict.fromkeys(self.columns["train_name"][self.completed].tolist()))
+            if len(self.columns["id"])
+            else []
+        )
 
     @property
     def quantities(self) -> list[str]:
@@ -125,7 +129,12 @@ class Answers:
         use = self.completed & np.isfinite(values)
         if train is not None:
             if train not in self.trains:
-                raise InputError("is not among the trains", field="train", value=train, fix=f"Known: {', '.join(self.trains)}")
+                raise InputError(
+                    "is not among the trains",
+                    field="train",
+                    value=train,
+                    fix=f"Known: {', '.join(self.trains)}",
+                )
             use = use & (self.columns["train_name"] == train)
         lowest = quantity.endswith(_LOWEST)
         sign = 1.0 if lowest else -1.0
@@ -167,7 +176,8 @@ class Answers:
         if "verdict" not in self.columns:
             return {}
         words, counts = np.unique(
-            [word for word in self.columns["verdict"].tolist() if isinstance(word, str) and word], return_counts=True
+            [word for word in self.columns["verdict"].tolist() if isinstance(word, str) and word],
+            return_counts=True,
         )
         return dict(zip(words.tolist(), counts.tolist(), strict=True))
 
@@ -176,6 +186,29 @@ class Answers:
         """Verdict of the study: fail if one scenario fails; None where nothing was assessed."""
         found = self.verdicts
         return next((word for word in ("fail", "not assessed", "pass") if word in found), None)
+
+    def checks(self) -> dict[str, dict[str, Any]]:
+        """Of each check: how many scenarios have which outcome, the largest utilization, and where that is."""
+        found: dict[str, dict[str, Any]] = {}
+        for name in self.columns:
+            check = name.removeprefix("verdict.")
+            if check == name:
+                continue
+            words = [word for word in self.columns[name].tolist() if isinstance(word, str)]
+            outcomes = {word: words.count(word) for word in dict.fromkeys(words)}
+            if not set(outcomes) & {"pass", "fail"}:
+                continue
+            shares = self._numbers(f"utilization.{check}")
+            found[check] = {"outcomes": outcomes}
+            if np.isfinite(shares).any():
+                row = int(np.nanargmax(shares))
+                found[check] |= {
+                    "utilization": float(shares[row]),
+                    "id": int(self.columns["id"][row]),
+                    "train": str(self.columns["train_name"][row]),
+                    "speed_m_per_s": float(self.columns["speed_m_per_s"][row]),
+                }
+        return found
 
     # --- in words ------------------------------------------------------------------------------
 
@@ -194,6 +227,7 @@ class Answers:
             "not_passed": int((self.columns["passed"][self.completed] == False).sum()),  # noqa: E712
             "verdict": self.verdict,
             "verdicts": self.verdicts,
+            "checks": self.checks(),
             "processor_seconds_in_march": float(np.nansum(self._numbers("seconds"))),
             "quantities": {name: self._of_quantity(name) for name in self.quantities},
             "resonances": {train: found.summary() for train, found in self.resonances.items()},
@@ -210,7 +244,8 @@ class Answers:
         by_train = self.critical(name)
         if len(by_train) <= 100:
             content["trains"] = {
-                train: {"critical_speed_m_per_s": speed, "worst": value} for train, (speed, value) in by_train.items()
+                train: {"critical_speed_m_per_s": speed, "worst": value}
+                for train, (speed, value) in by_train.items()
             }
         if self.random:
             content["distribution"] = _distribution(self.distribution(name))
@@ -253,6 +288,12 @@ class Answers:
         if self.verdict is not None:
             counts = ", ".join(f"{count} {word}" for word, count in self.verdicts.items())
             lines.append(f"  verdict     {self.verdict} ({counts})")
+            for check, about in self.checks().items():
+                failed = about["outcomes"].get("fail", 0)
+                text = f"{failed} fail" if failed else "pass"
+                if "utilization" in about:
+                    text += f", at most {about['utilization']:.3g} of the limit ({about['train']}, {3.6 * about['speed_m_per_s']:.4g} km/h)"
+                lines.append(f"    {check.replace('_', ' '):18} {text}")
         return lines
 
 

@@ -76,7 +76,9 @@ def varied(path: str, node: Node, trains: Trains, given: Given) -> Values | Chan
         if path == "train" and isinstance(data, str):
             names = trains.named(node)
             return Values(path, [trains.entries(name) for name in names], node, names)
-        raise node.fault("is one value, which does not vary", f"Write a list, [{data}], or put it into the base")
+        raise node.fault(
+            "is one value, which does not vary", f"Write a list, [{data}], or put it into the base"
+        )
     if "distribution" in data:
         variable = variable_of(node)
         return _drawn(path, node, variable, variable.texts)
@@ -125,7 +127,9 @@ def _factors(path: str, node: Node, given: Given) -> Values | Chance:
     parts = node.keys(("factor",), "{factor: [0.9, 1.1]}")
     inner, base = parts["factor"], given(path)
     if base is None:
-        raise node.fault("the base gives no value that a factor could multiply", "Write values in place of factors")
+        raise node.fault(
+            "the base gives no value that a factor could multiply", "Write values in place of factors"
+        )
     here = Node(base, node.source, node.path)
     try:
         like = amount(here)
@@ -151,9 +155,7 @@ def alike_number(node: Node, variable: Variable) -> None:
         raise node.fault("must be a plain number: it multiplies the value of the base")
 
 
-def _drawn(
-    path: str, node: Node, variable: Variable, texts: Callable[[FloatArray], Sequence[Any]]
-) -> Chance:
+def _drawn(path: str, node: Node, variable: Variable, texts: Callable[[FloatArray], Sequence[Any]]) -> Chance:
     return Chance(path, node, 1, lambda shares: (texts(shares[:, 0]), None))
 
 

@@ -92,7 +92,9 @@ def sampling_of(node: Node) -> Sampling:
         if name not in parts:
             raise node.source.blame((*node.path, name), "is missing", f"Write sampling: {_SAMPLING}")
     seed = parts["seed"].checked(SEED) if "seed" in parts else 1
-    return Sampling(parts["method"].checked(OneOf(METHODS)), parts["count"].checked(Whole(at_most=MOST)), seed)
+    return Sampling(
+        parts["method"].checked(OneOf(METHODS)), parts["count"].checked(Whole(at_most=MOST)), seed
+    )
 
 
 def variable_of(node: Node) -> Variable:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import logging
 import platform
 import time
@@ -36,11 +37,9 @@ class OnDask:
 
     def run(self, tasks: Iterable[Task]) -> Iterator[Done | Lost]:
         """What came of each task; closing the iterator cancels the rest."""
-        from distributed import as_completed
-
         supply = iter(tasks)
         running: dict[Any, Task] = {}
-        finished = as_completed(loop=self._client.loop)
+        finished = _engine().as_completed(loop=self._client.loop)
 
         def give(number: int) -> None:
             for _ in range(number):
@@ -90,17 +89,17 @@ def on_dask(address: str, workers: int | None = None, patience: float = PATIENCE
     InputError
         If Dask is not installed, the scheduler does not answer, has no workers, or they differ from this program.
     """
-    try:
-        import distributed
-    except ImportError:
-        raise InputError("is not installed", field="dask", fix="pip install 'axlespan[dask]'") from None
+    distributed = _engine()
     logging.getLogger("distributed").setLevel(logging.CRITICAL)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         cluster = None
         if address == LOCAL:
             cluster = distributed.LocalCluster(
-                n_workers=workers or 1, threads_per_worker=1, dashboard_address=None, silence_logs=logging.CRITICAL
+                n_workers=workers or 1,
+                threads_per_worker=1,
+                dashboard_address=None,
+                silence_logs=logging.CRITICAL,
             )
         client = _connected(cluster or address, patience)
         try:
@@ -115,12 +114,17 @@ def on_dask(address: str, workers: int | None = None, patience: float = PATIENCE
                     cluster.close(timeout=5)
 
 
-def _connected(target: Any, patience: float) -> Any:
-    from distributed import Client
+def _engine() -> Any:
+    try:
+        return importlib.import_module("distributed")
+    except ImportError:
+        raise InputError("is not installed", field="dask", fix="pip install 'axlespan[dask]'") from None
 
+
+def _connected(target: Any, patience: float) -> Any:
     begun = time.monotonic()
     try:
-        return Client(target, timeout=f"{patience}s", set_as_default=False)
+        return _engine().Client(target, timeout=f"{patience}s", set_as_default=False)
     except (OSError, TimeoutError) as error:
         waited = time.monotonic() - begun
         raise InputError(
@@ -174,10 +178,14 @@ def _require_same(client: Any) -> None:
     except Exception as error:
         words = " ".join(str(error).split())[:200] or type(error).__name__
         raise InputError(
-            f"cannot use axlespan on a worker: {words}", field="scheduler", fix="Install axlespan on all workers"
+            f"cannot use axlespan on a worker: {words}",
+            field="scheduler",
+            fix="Install axlespan on all workers",
         ) from error
     for worker, found in there.items():
-        differing = [f"{name} {found.get(name)} (here {here[name]})" for name in here if found.get(name) != here[name]]
+        differing = [
+            f"{name} {found.get(name)} (here {here[name]})" for name in here if found.get(name) != here[name]
+        ]
         if differing:
             raise InputError(
                 f"has a worker with other versions: {worker} has {', '.join(differing)}",

@@ -37,7 +37,9 @@ def _placed(data: Any, steps: Sequence[str], value: Any) -> Any:
             )
         return [_placed(item, rest, value) if n == int(step) else item for n, item in enumerate(data)]
     if isinstance(data, Mapping):
-        name = next((".".join(steps[:n]) for n in range(len(steps), 1, -1) if ".".join(steps[:n]) in data), step)
+        name = next(
+            (".".join(steps[:n]) for n in range(len(steps), 1, -1) if ".".join(steps[:n]) in data), step
+        )
         rest = steps[len(name.split(".")) :]
         return {**data, name: _placed(data.get(name), rest, value)}
     if data is None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator
 from typing import Final
@@ -73,7 +74,7 @@ def _cuts(apart: IntArray, structure: IntArray, lanes: int) -> Iterator[tuple[in
         if right - left > lanes:
             pieces = math.ceil((right - left) / lanes)
             marks = np.linspace(left, right, pieces + 1).round().astype(int).tolist()
-            yield from zip(marks[:-1], marks[1:], strict=True)
+            yield from itertools.pairwise(marks)
             begin = right
     if begin < n:
         yield begin, n

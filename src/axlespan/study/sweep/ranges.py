@@ -29,7 +29,7 @@ class Amount:
 
     number: float
     unit: str
-    exponents: tuple[float, ...]
+    exponents: units.Exponents
     scale: float
     decimal: Decimal
 
@@ -57,7 +57,7 @@ def amount(node: Node) -> Amount:
         raise node.fault(error.rule, error.fix) from None
     scale = units.read(f"1 {reading.unit}").value if reading.unit else 1.0
     number = reading.number.replace("_", "")
-    return Amount(float(number), reading.unit, tuple(reading.exponents), scale, Decimal(number))
+    return Amount(float(number), reading.unit, reading.exponents, scale, Decimal(number))
 
 
 def alike(node: Node, like: Amount) -> Amount:

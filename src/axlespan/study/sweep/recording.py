@@ -27,7 +27,9 @@ QUANTITIES: Final[Mapping[str, Dimension]] = {
     "sensor_velocity": SPEED,
     "sensor_displacement": LENGTH,
 }
-_EXAMPLE: Final = "records: {sampling_rate: 200 Hz, noise: {std: 5 mm/s^2}, quantization: {bits: 16, range: 20 m/s^2}}"
+_EXAMPLE: Final = (
+    "records: {sampling_rate: 200 Hz, noise: {std: 5 mm/s^2}, quantization: {bits: 16, range: 20 m/s^2}}"
+)
 # Corner of the anti-alias filter as a share of the sampling rate, and its order (doubled by going both ways).
 _CORNER, _ORDER = 0.4, 8
 
@@ -69,7 +71,7 @@ class Recording:
         scale = self.noise + self.noise_share * sampled.std(axis=0)
         noisy = sampled + scale * random.standard_normal(sampled.shape)
         if self.bits is None:
-            return noisy
+            return np.asarray(noisy)
         step = 2.0 * self.limit / 2**self.bits
         codes = np.clip(np.round(noisy / step), -(2 ** (self.bits - 1)), 2 ** (self.bits - 1) - 1)
         return np.asarray(codes * step)
@@ -98,7 +100,9 @@ def recording_of(node: Node) -> Recording:
     parts = node.keys(known, _EXAMPLE)
     if "sampling_rate" not in parts:
         raise node.source.blame((*node.path, "sampling_rate"), "is missing", f"Write {_EXAMPLE}")
-    quantity = parts["quantity"].checked(OneOf(tuple(QUANTITIES))) if "quantity" in parts else "sensor_acceleration"
+    quantity = (
+        parts["quantity"].checked(OneOf(tuple(QUANTITIES))) if "quantity" in parts else "sensor_acceleration"
+    )
     more: dict[str, Any] = {}
     if "noise" in parts:
         more |= _noise(parts["noise"], QUANTITIES[quantity])

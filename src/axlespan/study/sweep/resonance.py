@@ -32,7 +32,7 @@ class Resonances:
     spacing: float  # distance d that repeats in the train [m]
 
     def speeds(self, order: int) -> FloatArray:
-        """v = f d / i for each frequency (n_frequency,) [m/s]."""
+        """V = f d / i for each frequency (n_frequency,) [m/s]."""
         return self.frequencies * self.spacing / order
 
     def between(self, low: float, high: float) -> list[tuple[int, int, float]]:

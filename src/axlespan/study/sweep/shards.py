@@ -66,8 +66,9 @@ def histories_of(kept: Kept | None, results: Mapping[int, tuple[Result, Plan]]) 
 
 
 def shard_bytes(histories: Histories, attributes: Mapping[str, Any]) -> bytes:
-    """A shard as the bytes of a netCDF-4 file: made in memory, since a disk that is full while HDF5 closes a
-    file takes the whole process down.
+    """A shard as the bytes of a netCDF-4 file.
+
+    Made in memory: a disk that is full while HDF5 closes a file takes the whole process down.
     """
     content = BytesIO()
     with h5netcdf.File(content, "w") as file:
@@ -75,7 +76,9 @@ def shard_bytes(histories: Histories, attributes: Mapping[str, Any]) -> bytes:
         longest = max((len(a) for _, _, arrays in histories.tables.values() for a in arrays), default=0)
         file.dimensions["scenario"] = len(histories.ids)
         file.dimensions["time"] = longest
-        file.create_variable("scenario", ("scenario",), np.int64, data=np.array(histories.ids, dtype=np.int64))
+        file.create_variable(
+            "scenario", ("scenario",), np.int64, data=np.array(histories.ids, dtype=np.int64)
+        )
         times = np.arange(longest) * histories.interval
         clock = file.create_variable("time", ("time",), np.float64, data=times)
         clock.attrs["units"] = "s"

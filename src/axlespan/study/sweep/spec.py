@@ -71,12 +71,16 @@ class Spec:
     title: str
     base: Base
     axes: tuple[Axis, ...]
-    passage: float | None = None  # time after the last wheel has left [s]; None: each run as long as the base says
+    passage: float | None = (
+        None  # time after the last wheel has left [s]; None: each run as long as the base says
+    )
     kept: Kept | None = None
     recording: Recording | None = None
     sampling: Sampling | None = None
     notes: tuple[str, ...] = ()
-    definition: Mapping[str, Any] = field(default_factory=dict)  # the study as it is written, without its title
+    definition: Mapping[str, Any] = field(
+        default_factory=dict
+    )  # the study as it is written, without its title
 
 
 def load_spec(path: str | os.PathLike[str], library: Sequence[str] = ()) -> Spec:

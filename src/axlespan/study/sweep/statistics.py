@@ -77,7 +77,10 @@ def convergence(values: FloatArray, points: int = 50) -> tuple[npt.NDArray[np.in
     finite = values[np.isfinite(values)]
     counts = np.unique(np.geomspace(2, max(2, len(finite)), points).round().astype(np.int64))
     counts = counts[counts <= len(finite)]
-    sums, squares = np.cumsum(finite), np.cumsum((finite - finite.mean()) ** 2) if len(finite) else np.zeros(0)
+    sums, squares = (
+        np.cumsum(finite),
+        np.cumsum((finite - finite.mean()) ** 2) if len(finite) else np.zeros(0),
+    )
     means = sums[counts - 1] / counts
     shifted = means - (finite.mean() if len(finite) else 0.0)
     variance = np.maximum(squares[counts - 1] - counts * shifted**2, 0.0) / (counts - 1)

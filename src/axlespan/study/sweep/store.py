@@ -178,7 +178,10 @@ class Store:
         parts = sorted((self.folder / TABLE).glob("*.parquet"))
         if not parts:
             return {name: np.empty(0) for name in wanted}
-        read = [pq.read_table(part, columns=list(dict.fromkeys(["id", *wanted])), partitioning=None) for part in parts]
+        read = [
+            pq.read_table(part, columns=list(dict.fromkeys(["id", *wanted])), partitioning=None)
+            for part in parts
+        ]
         whole = pa.concat_tables(read).sort_by("id")
         return {name: whole.column(name).to_numpy(zero_copy_only=False) for name in wanted}
 
@@ -250,7 +253,11 @@ class Store:
         folder.mkdir(exist_ok=True)
         token = digest(list(histories.ids))[:12]
         path = folder / f"{kind}-{histories.ids[0]:09d}-{token}.nc"
-        about = {"format": f"axlespan study {kind}", "version": self.header.version, "study": self.header.digest}
+        about = {
+            "format": f"axlespan study {kind}",
+            "version": self.header.version,
+            "study": self.header.digest,
+        }
         write_whole(path, shard_bytes(histories, about))
         return path.name
 
@@ -290,7 +297,8 @@ def _parquet(rows: Sequence[Mapping[str, Any]], columns: Mapping[str, str]) -> b
     types = {"int": pa.int64(), "number": pa.float64(), "text": pa.string(), "flag": pa.bool_()}
     schema = pa.schema([(name, types[kind]) for name, kind in columns.items()])
     arrays = [
-        pa.array([_fitting(row.get(name), kind) for row in rows], type=types[kind]) for name, kind in columns.items()
+        pa.array([_fitting(row.get(name), kind) for row in rows], type=types[kind])
+        for name, kind in columns.items()
     ]
     content = BytesIO()
     pq.write_table(pa.Table.from_arrays(arrays, schema=schema), content, compression="zstd")
@@ -341,7 +349,11 @@ def _require_room(folder: Path, resume: bool) -> bool:
             fix = "Use --resume to compute what is missing, or name another folder with -o"
             raise InputError("holds a study already", place=place, fix=fix)
         return False
-    if [name for name in entries if not name.startswith(".") and name not in (TABLE, "study.yaml", "base.yaml")]:
+    if [
+        name
+        for name in entries
+        if not name.startswith(".") and name not in (TABLE, "study.yaml", "base.yaml")
+    ]:
         raise InputError("is not empty, and holds no study", place=place, fix="Name another folder with -o")
     return False
 
@@ -374,11 +386,15 @@ def _read_header(folder: Path) -> Header:
             raise KeyError
         version = int(content["format_version"])
     except FileNotFoundError:
-        raise InputError("holds no study", place=Place(str(folder)), fix="Run axlespan sweep study.yaml -o FOLDER") from None
+        raise InputError(
+            "holds no study", place=Place(str(folder)), fix="Run axlespan sweep study.yaml -o FOLDER"
+        ) from None
     except (OSError, ValueError, LookupError, TypeError):
         raise InputError("is damaged, or no study of axlespan", place=place) from None
     if version > FORMAT_VERSION:
-        raise InputError(f"was written in format {version}; this version reads up to {FORMAT_VERSION}", place=place)
+        raise InputError(
+            f"was written in format {version}; this version reads up to {FORMAT_VERSION}", place=place
+        )
     return Header(
         content["digest"],
         int(content["scenarios"]),

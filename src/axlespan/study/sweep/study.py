@@ -101,7 +101,9 @@ class Scenario:
         if recording is None:
             raise InputError("is missing in the study", field="records")
         made = result if result is not None else self.run()
-        return recording.record(getattr(made, recording.quantity), self.built.plan.settings.time_step, self.id)
+        return recording.record(
+            getattr(made, recording.quantity), self.built.plan.settings.time_step, self.id
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,7 +193,9 @@ class Study:
         text = to_json({key: value for key, value in given.items() if value is not None}, indent=1)
         document = read_yaml(text, "study")
         try:
-            self._take(read_spec(Node(document.data, Source("study", text, document.root)), Path(), library.names()))
+            self._take(
+                read_spec(Node(document.data, Source("study", text, document.root)), Path(), library.names())
+            )
         except InputError as error:
             raise InputErrors(_placeless(error)) from None
 
@@ -359,7 +363,9 @@ class Study:
         if complete:
             store.write_summary(answers.summary())
         unsuccessful = answers.failed
-        return RunOutcome(len(every), done, unsuccessful, len(every) - len(there) - done, tuple(dict.fromkeys(reasons)))
+        return RunOutcome(
+            len(every), done, unsuccessful, len(every) - len(there) - done, tuple(dict.fromkeys(reasons))
+        )
 
     def _texts(self) -> dict[str, str]:
         texts = {"study.yaml": self.spec.source.text}
@@ -385,7 +391,9 @@ class Study:
         if folder is not None:
             return Store.open(Path(folder))
         if self._store is None:
-            raise InputError("is needed: the study has not been run here", field="folder", fix="Name its store")
+            raise InputError(
+                "is needed: the study has not been run here", field="folder", fix="Name its store"
+            )
         return self._store
 
     def __repr__(self) -> str:

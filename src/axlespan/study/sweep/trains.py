@@ -48,7 +48,9 @@ class Trains:
             return list(_SETS[word])
         if self.library and word not in self.library:
             near = nearest(word, (*self.own, *_SETS, *self.library))
-            fix = f"Did you mean {near}?" if near else "axlespan library lists them; or define it under trains"
+            fix = (
+                f"Did you mean {near}?" if near else "axlespan library lists them; or define it under trains"
+            )
             raise node.fault("no such train", fix)
         return [word]
 
@@ -98,7 +100,9 @@ class Mix:
 
     def draw(self, shares: FloatArray) -> tuple[Sequence[Any], Sequence[str]]:
         """Trains and their labels from shares (n, dimensions)."""
-        chosen = np.minimum(np.searchsorted(self.shares, shares[:, : self.count], side="right"), len(self.names) - 1)
+        chosen = np.minimum(
+            np.searchsorted(self.shares, shares[:, : self.count], side="right"), len(self.names) - 1
+        )
         gaps = self._gaps(shares)
         values, labels = [], []
         for row in range(len(shares)):
@@ -114,7 +118,9 @@ class Mix:
 
     def _gaps(self, shares: FloatArray) -> FloatArray:
         if isinstance(self.space, Variable):
-            drawn = [self.space.values(column) * self.space.like.scale for column in shares[:, self.count :].T]
+            drawn = [
+                self.space.values(column) * self.space.like.scale for column in shares[:, self.count :].T
+            ]
             return np.array(drawn).T
         return np.full((len(shares), max(self.count - 1, 0)), self.space or 0.0)
 
@@ -141,7 +147,11 @@ def trains_of(node: Node | None, library: Sequence[str]) -> Trains:
     for name, entries in node.entries("trains", "{freight: [{vehicle: ...}]}") if node else ():
         if isinstance(entries.data, Mapping):
             own[name] = [entries.data]
-        elif isinstance(entries.data, list) and entries.data and all(isinstance(e, Mapping) for e in entries.data):
+        elif (
+            isinstance(entries.data, list)
+            and entries.data
+            and all(isinstance(e, Mapping) for e in entries.data)
+        ):
             own[name] = entries.data
         else:
             faults.append(entries.fault("must be a list of vehicles", "Write [{vehicle: ice3, count: 8}]"))

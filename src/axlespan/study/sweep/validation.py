@@ -17,6 +17,7 @@ from axlespan.study.source import Source
 from axlespan.study.sweep.axes import Values
 from axlespan.study.sweep.recipe import Recipe
 from axlespan.study.sweep.scenarios import Scenarios
+from axlespan.study.yaml_tree import Written
 from axlespan.vehicles import library
 
 MOST: Final = 2000
@@ -91,7 +92,11 @@ def blamed(error: InputError, scenarios: Scenarios, source: Source, number: int)
 
 def _at_value(error: InputError, part: Values, number: int, rest: str, source: Source) -> InputError:
     path = part.place(number)
-    rule = f"{rest} {error.rule}" if rest.replace(".", "").isidentifier() and error.rule.startswith("is missing") else error.rule
+    rule = (
+        f"{rest} {error.rule}"
+        if rest.replace(".", "").isidentifier() and error.rule.startswith("is missing")
+        else error.rule
+    )
     unknown = error.rule in ("unknown key", "does not belong here")
     if unknown:
         fix = error.fix
@@ -106,8 +111,8 @@ def _at_value(error: InputError, part: Values, number: int, rest: str, source: S
     value: Any = part.values[number]
     if rest or isinstance(value, list | dict):
         label = part.labels[number] if part.labels else None
-        more: dict[str, Any] = {"value": label} if label else {}
+        more: dict[str, Any] = {"value": Written(label)} if label else {}
         field = f"vary.{part.path}" + (f".{rest}" if rest else "")
     else:
-        more, field = {"value": value}, f"vary.{part.path}"
+        more, field = {"value": Written(value) if isinstance(value, str) else value}, f"vary.{part.path}"
     return InputError(rule, field=field, fix=error.fix, place=source.place(path), **more)

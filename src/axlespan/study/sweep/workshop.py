@@ -117,9 +117,7 @@ class Workshop:
         data = self.recipe.composed(values)
         case = case_of(self.recipe, data)
         loaded = LoadedCase(case, self.recipe.source, Path(self.recipe.folder))
-        made: BuiltStructure = self._structures.get(
-            _key(data["structure"]), lambda: self._structure(loaded)
-        )
+        made: BuiltStructure = self._structures.get(_key(data["structure"]), lambda: self._structure(loaded))
         key = (_key([data["train"], case.analysis.gravity, case.analysis.vehicles]), id(made))
         return self._built(loaded, made, key)
 
@@ -224,7 +222,9 @@ class Workshop:
             found[number] = recording.record(values, plan.settings.time_step, number)
         sensors = next(iter(results.values()))[0].sensor if results else ()
         return Histories(
-            tuple(found), 1.0 / recording.rate, {recording.quantity: ("sensor", tuple(sensors), list(found.values()))}
+            tuple(found),
+            1.0 / recording.rate,
+            {recording.quantity: ("sensor", tuple(sensors), list(found.values()))},
         )
 
 
@@ -251,8 +251,11 @@ def passage(crossing: Crossing) -> float:
     for run in crossing.runs:
         lines = [crossing.structure.line(name) for name in dict.fromkeys(run.lines)]
         reach = float(run.train.offsets.max())
-        goal = max(line.stop for line in lines) if run.course.direction > 0 else min(line.start for line in lines)
-
+        goal = (
+            max(line.stop for line in lines)
+            if run.course.direction > 0
+            else min(line.start for line in lines)
+        )
 
         def left(times: FloatArray, run: Run = run, reach: float = reach, goal: float = goal) -> FloatArray:
             tail = run.course.head(times) - run.course.direction * reach
@@ -298,7 +301,10 @@ def _computed(
 def _facts(built: BuiltCase, row: Mapping[str, Any]) -> dict[str, Any]:
     speed = float(np.abs(built.plan.rows.motion(0.0)[0]).max(initial=0.0))
     label = row.get("train")
-    return {"train_name": label if isinstance(label, str) else built.crossing.train_names, "speed_m_per_s": speed}
+    return {
+        "train_name": label if isinstance(label, str) else built.crossing.train_names,
+        "speed_m_per_s": speed,
+    }
 
 
 def _key(data: Any) -> str:
@@ -306,7 +312,9 @@ def _key(data: Any) -> str:
 
 
 def _words(error: BaseException) -> str:
-    text = str(error) or ("there is not enough memory" if isinstance(error, MemoryError) else type(error).__name__)
+    text = str(error) or (
+        "there is not enough memory" if isinstance(error, MemoryError) else type(error).__name__
+    )
     return " ".join(text.split())[:500]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -9,6 +10,8 @@ from typing import Any
 from axlespan.errors import InputError, Place
 from axlespan.model.dofs import nearest
 from axlespan.units import Dimension, parse
+
+_DEEPEST, _MOST = 20, 100_000
 
 
 @dataclass(frozen=True)
@@ -102,10 +105,12 @@ def read_document(text: str, file: str) -> Item:
         If it is no YAML, or a key is given twice; with line and column.
     """
     from ruamel.yaml import YAML  # late: nothing but library files needs it here
-    from ruamel.yaml.error import MarkedYAMLError, YAMLError
+    from ruamel.yaml.error import MarkedYAMLError, ReusedAnchorWarning, YAMLError
 
     try:
-        node = YAML(typ="safe", pure=True).compose(text)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ReusedAnchorWarning)
+            node = YAML(typ="safe", pure=True).compose(text)
     except MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         place = Place(file, mark.line + 1, mark.column + 1) if mark else Place(file)
@@ -114,42 +119,60 @@ def read_document(text: str, file: str) -> Item:
         raise InputError(f"is no YAML that can be read: {error}", place=Place(file)) from None
     if node is None:
         raise InputError("is empty", place=Place(file))
-    return _item(node, file, "", set())
+    return _Reader(file).item(node, "", frozenset())
 
 
-def _item(node: Any, file: str, path: str, open_nodes: set[int]) -> Item:
-    place = Place(file, node.start_mark.line + 1, node.start_mark.column + 1)
-    if id(node) in open_nodes or len(open_nodes) > 20:
-        raise InputError("is nested too deeply", field=path or None, place=place)
-    kind = type(node).__name__
-    if kind == "ScalarNode":
-        empty = str(node.tag).endswith(":null")
-        return Item("" if empty else str(node.value), place, path)
-    inside = open_nodes | {id(node)}
-    if kind == "SequenceNode":
-        listed = (
-            _item(inner, file, f"{path}.{number}" if path else str(number), inside)
-            for number, inner in enumerate(node.value)
-        )
-        return Item(tuple(listed), place, path)
-    content: dict[str, Item] = {}
-    keys: dict[str, Place] = {}
-    for key, inner in _pairs(node):
-        name = str(key.value)
-        at = Place(file, key.start_mark.line + 1, key.start_mark.column + 1)
-        full = f"{path}.{name}" if path else name
-        if name in keys:
-            raise InputError(f"is given twice; the first is in line {keys[name].line}", field=full, place=at)
-        keys[name] = at
-        content[name] = _item(inner, file, full, inside)
-    return Item(content, place, path, keys)
+class _Reader:
+    """Turns composed nodes into items, and counts them: aliases of aliases grow without end."""
+
+    def __init__(self, file: str) -> None:
+        self.file = file
+        self.count = 0
+
+    def item(self, node: Any, path: str, open_nodes: frozenset[int]) -> Item:
+        """Return the item of a node that stands within others."""
+        place = self.place(node)
+        self.count += 1
+        if id(node) in open_nodes or len(open_nodes) > _DEEPEST or self.count > _MOST:
+            raise InputError("is nested too deeply, or has too many values", field=path or None, place=place)
+        kind = type(node).__name__
+        if kind == "ScalarNode":
+            return Item("" if str(node.tag).endswith(":null") else str(node.value), place, path)
+        inside = open_nodes | {id(node)}
+        if kind == "SequenceNode":
+            listed = (
+                self.item(inner, _below(path, str(number)), inside) for number, inner in enumerate(node.value)
+            )
+            return Item(tuple(listed), place, path)
+        content: dict[str, Item] = {}
+        keys: dict[str, Place] = {}
+        for key, inner in self.pairs(node, inside):
+            name = str(key.value)
+            if name in keys:
+                rule = f"is given twice; the first is in line {keys[name].line}"
+                raise InputError(rule, field=_below(path, name), place=self.place(key))
+            keys[name] = self.place(key)
+            content[name] = self.item(inner, _below(path, name), inside)
+        return Item(content, place, path, keys)
+
+    def pairs(self, node: Any, open_nodes: frozenset[int]) -> Iterator[tuple[Any, Any]]:
+        """Keys and values of a mapping; ``<<: *anchor`` brings in those that it does not have itself."""
+        own = {str(key.value) for key, _ in node.value}
+        for key, value in node.value:
+            if not str(key.tag).endswith(":merge"):
+                yield key, value
+            elif type(value).__name__ != "MappingNode" or id(value) in open_nodes:
+                raise InputError(
+                    "must be followed by one alias of a mapping", field="<<", place=self.place(key)
+                )
+            else:
+                merged = self.pairs(value, open_nodes | {id(value)})
+                yield from (pair for pair in merged if str(pair[0].value) not in own)
+
+    def place(self, node: Any) -> Place:
+        """Return where a node starts."""
+        return Place(self.file, node.start_mark.line + 1, node.start_mark.column + 1)
 
 
-def _pairs(node: Any) -> Iterator[tuple[Any, Any]]:
-    """Keys and values of a mapping; ``<<: *anchor`` brings in those that it does not have itself."""
-    own = {str(key.value) for key, _ in node.value}
-    for key, value in node.value:
-        if str(key.tag).endswith(":merge"):
-            yield from (pair for pair in value.value if str(pair[0].value) not in own)
-        else:
-            yield key, value
+def _below(path: str, name: str) -> str:
+    return f"{path}.{name}" if path else name

@@ -45,6 +45,13 @@ def read_entry(text: str, file: str, name: str, other: Callable[[str], LibraryEn
     groups = _groups(keys["vehicles"], numbers, other) if kind == "train" else ()
     pitch = numbers.positive(keys["pitch"], units.LENGTH, "pitch") if "pitch" in keys else None
     stated = _stated(keys["stated"], numbers) if "stated" in keys else Stated()
+    if model is not None and len(stated.axle_loads) > 1:
+        axles = len({point.behind for point in model.contacts})
+        if len(stated.axle_loads) != axles:
+            rule = f"has {len(stated.axle_loads)} values for {axles} axles"
+            raise (
+                keys["stated"].mapping()["axle_loads"].wrong(rule, "Write one for each axle, or one for all")
+            )
     return LibraryEntry(
         name=name,
         kind=kind,
