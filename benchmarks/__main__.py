@@ -5,10 +5,10 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from benchmarks import beams, solid
+from benchmarks import beams, growth, solid, track
 from benchmarks.timing import report
 
-BENCHMARKS = {"beams": beams.run, "solid": solid.run}
+BENCHMARKS = {"beams": beams.run, "track": track.run, "growth": growth.run, "solid": solid.run}
 
 
 def main() -> None:
@@ -16,10 +16,12 @@ def main() -> None:
     parser.add_argument(
         "names", nargs="*", metavar="NAME", help=f"of {', '.join(BENCHMARKS)}; all by default"
     )
-    parser.add_argument("--runs", type=int, default=3)
+    parser.add_argument("--runs", type=int, default=None, help="3, or 1 with --quick")
+    parser.add_argument("--quick", action="store_true", help="short runs: about two minutes for all")
     parser.add_argument("--output", type=Path, default=Path("out/bench.json"))
     arguments = parser.parse_args()
-    rows = [row for name in arguments.names or BENCHMARKS for row in BENCHMARKS[name](arguments.runs)]
+    runs = arguments.runs or (1 if arguments.quick else 3)
+    rows = [row for name in arguments.names or BENCHMARKS for row in BENCHMARKS[name](runs, arguments.quick)]
     report(rows, arguments.output)
 
 

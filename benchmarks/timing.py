@@ -1,7 +1,11 @@
-"""Timing of alternatives in turns, so that a machine whose speed drifts is fair to all of them."""
+"""Timing of alternatives in turns, so that a machine whose speed drifts is fair to all of them.
+
+Times are of the processor, with one thread the same as those of the clock where nothing else runs.
+"""
 
 from __future__ import annotations
 
+import importlib.metadata
 import json
 import os
 import platform
@@ -14,6 +18,11 @@ from pathlib import Path
 import numpy as np
 import scipy
 
+import axlespan
+
+#: The fact that ratios compare, where an alternative has it; the whole time else.
+COST = "us/step"
+
 
 @dataclass
 class Row:
@@ -22,7 +31,7 @@ class Row:
     benchmark: str
     name: str
     seconds: list[float]  # of each run
-    ratio: float  # to the first alternative of the benchmark: median of the ratios run by run
+    ratio: float  # of the cost to that of the first alternative: median of the ratios run by run
     facts: Mapping[str, float | str] = field(default_factory=dict)
 
     @property
@@ -35,23 +44,46 @@ def in_turns(
 ) -> list[Row]:
     """Time alternatives A B C A B C …; the first one is what the ratios refer to."""
     seconds: dict[str, list[float]] = {name: [] for name in alternatives}
-    facts: dict[str, Mapping[str, float | str]] = {}
+    costs: dict[str, list[float]] = {name: [] for name in alternatives}
+    facts: dict[str, list[Mapping[str, float | str]]] = {name: [] for name in alternatives}
     for _ in range(runs):
         for name, work in alternatives.items():
-            begun = time.perf_counter()
-            facts[name] = work() or {}
-            seconds[name].append(time.perf_counter() - begun)
-    first = seconds[next(iter(alternatives))]
+            begun = time.process_time()
+            facts[name].append(work() or {})
+            seconds[name].append(time.process_time() - begun)
+            costs[name].append(float(facts[name][-1].get(COST, seconds[name][-1])))
+    first = costs[next(iter(alternatives))]
     return [
         Row(
             benchmark,
             name,
-            times,
-            statistics.median(t / r for t, r in zip(times, first, strict=True)),
-            facts[name],
+            seconds[name],
+            statistics.median(cost / one for cost, one in zip(costs[name], first, strict=True)),
+            _medians(facts[name]),
         )
-        for name, times in seconds.items()
+        for name in alternatives
     ]
+
+
+def _medians(facts: list[Mapping[str, float | str]]) -> Mapping[str, float | str]:
+    """Medians of the numbers of several runs, and the words of the last."""
+    return {
+        name: statistics.median(float(fact[name]) for fact in facts) if isinstance(last, float) else last
+        for name, last in facts[-1].items()
+    }
+
+
+def per_step(
+    simulate: Callable[[int], object], steps: int, crossings: int = 1, first: int = 1
+) -> dict[str, float | str]:
+    """Cost of a step of a crossing all in [µs], and of all before [s]: a run of the first steps, and a long one."""
+    begun = time.process_time()
+    simulate(first)
+    setup = time.process_time() - begun
+    begun = time.process_time()
+    simulate(steps)
+    whole = time.process_time() - begun
+    return {COST: 1e6 * (whole - setup) / ((steps - first) * crossings), "before s": setup}
 
 
 def machine() -> dict[str, str | int]:
@@ -66,8 +98,17 @@ def machine() -> dict[str, str | int]:
         "python": platform.python_version(),
         "numpy": np.__version__,
         "scipy": scipy.__version__,
+        "axlespan": axlespan.__version__,
+        **{name: _version(name) for name in ("numba", "mkl")},
         "threads": os.environ.get("OMP_NUM_THREADS", "not set"),
     }
+
+
+def _version(name: str) -> str:
+    try:
+        return importlib.metadata.version(name)
+    except importlib.metadata.PackageNotFoundError:
+        return "not installed"
 
 
 def _cpu_lines() -> list[str]:
@@ -77,7 +118,7 @@ def _cpu_lines() -> list[str]:
 
 def report(rows: list[Row], path: Path) -> None:
     """Print a table, and write the same as JSON."""
-    print(f"{'benchmark':34} {'what':30} {'median s':>10} {'ratio':>9}  facts")
+    print(f"{'benchmark':34} {'what':30} {'run s':>10} {'ratio':>9}  facts")
     for row in rows:
         facts = ", ".join(
             f"{k} {v:.4g}" if isinstance(v, float) else f"{k} {v}" for k, v in row.facts.items()

@@ -97,7 +97,8 @@ class TestRight:
 
     def test_tracks_beside_each_other(self):
         grid = beam_grid(**GRID, track_centers=[2.0, -2.0])
-        assert list(grid.lines) == ["main", "left", "right", "main2", "left2", "right2"]
+        names = ["main", "left", "right", "main2", "left2", "right2"]
+        assert list(grid.lines) == [*names, "girder1", "girder2", "girder3", "girder4"]
         u, _ = under(grid, {("main", 12.0): 1e5})
         v, _ = under(grid, {("main2", 12.0): 1e5})
         assert at(grid, u, "main", 12.0) == pytest.approx(at(grid, v, "main2", 12.0), rel=1e-9)

@@ -315,3 +315,28 @@ class TestBadInput:
     def test_a_zone_off_the_track(self):
         with pytest.raises(InputError, match=r"zones\.0 = '200 to 210 m': lies off the track"):
             with_track(simple_span(**DECK), ballasted_track(), zones=[Zone(200.0, 210.0, 2.0)])
+
+
+class TestSpace:
+    def test_wheels_left_and_right_carry_half_of_a_plane_wheel(self):
+        vehicle = asp.vehicles.multibody(
+            bodies=[asp.vehicles.Body("body", mass=27e3, inertia=3e5, position=4.0, roll_inertia=4e4)],
+            wheels=[asp.vehicles.Wheel(at, mass=1800.0, gauge=1.5, roll_inertia=900.0) for at in (0.0, 8.0)],
+            suspensions=[
+                asp.vehicles.Suspension(("body", f"wheel{i}"), stiffness=0.6e6, damping=20e3, spread=2.0)
+                for i in (1, 2)
+            ],
+        )
+        motion = dict(time_step=1e-3, steps=900, sensors={"left": ("left", 40.2), "right": ("right", 40.2)})
+        space = track_on_ground(ballasted_track(), 60.0, space=True)
+        result = asp.simulate(asp.Crossing(space, asp.Train.of(vehicle), speed=60.0), **motion)
+        plane = track_on_ground(ballasted_track(), 60.0)
+        sensors = {"rail": 40.2}
+        flat = asp.simulate(
+            asp.Crossing(plane, asp.Train.of(coach()), speed=60.0), **{**motion, "sensors": sensors}
+        )
+        one, other = (result.sensor_displacement[:, i] for i in range(2))
+        deepest = np.abs(one).max()
+        np.testing.assert_allclose(one, other, atol=1e-9 * deepest)
+        np.testing.assert_allclose(one, flat.sensor_displacement[:, 0], atol=1e-6 * deepest)
+        np.testing.assert_allclose(result.contact_force[:, 0], 0.5 * flat.contact_force[:, 0], rtol=1e-5)

@@ -27,6 +27,13 @@ def test_without_the_section_nothing_is_assessed(run):
     assert "Rules" not in answer.out
 
 
+def test_check_says_what_the_bridge_is_taken_for(axlespan, case):
+    answer = axlespan("check", case(("output:", f"{WANTED}output:")))
+    assert answer.code == 0
+    assert "  rules       simple span of 25 m, L_Φ 25 m, n0 4.013 Hz; 5 checks\n" in answer.out
+    assert "rules" not in axlespan("check", case()).out
+
+
 def test_a_run_that_passes(run):
     answer, summary = run(("output:", f"{WANTED}output:"), ("steps: 50", "steps: 1500"))
     assert (answer.code, summary["assessment"], summary["verdict"]) == (0, "pass", "pass")

@@ -83,6 +83,48 @@ def test_side_by_side(bridge, alpha):
         assert result.checks["tension_episodes"] == alone.checks["tension_episodes"]
 
 
+@pytest.mark.parametrize("alpha", [0.0, -0.1])
+def test_side_by_side_to_the_tenth_digit(alpha):
+    """All but the rates of massless contact points, whose rounding Newmark multiplies by 4 / Δt²."""
+    bridge = BRIDGES["Rayleigh"]
+    several = crossings(bridge)[:3]
+    settings = {"time_step": 2e-3, "method": Alpha(alpha), "sensors": {"m": 12.5}, "steps": 400}
+    for result, crossing in zip(simulate_many(several, **settings), several, strict=True):
+        alone = simulate(crossing, **settings)
+        bodies = [i for i, name in enumerate(alone.vehicle_dof) if "wheel" not in name]
+        for quantity in QUANTITIES:
+            a, b = getattr(result, quantity), getattr(alone, quantity)
+            if quantity.startswith("vehicle"):
+                a, b = a[:, bodies], b[:, bodies]
+            assert np.abs(a - b).max(initial=0.0) <= 1e-10 * np.abs(b).max(initial=0.0), quantity
+
+
+@pytest.mark.parametrize("threads", [2, 3])
+def test_threads_change_nothing(threads):
+    bridge = BRIDGES["plain"]
+    several = crossings(bridge)
+    settings = {"time_step": 2e-3, "steps": [100, 50, 100, 80, 100], "sensors": {"m": 12.5}}
+    one = simulate_many(several, **settings, threads=1)
+    for result, other in zip(simulate_many(several, **settings, threads=threads), one, strict=True):
+        assert result.facts["threads"] == threads
+        for quantity in ("sensor_displacement", "contact_force", "support_reaction"):
+            a, b = getattr(result, quantity), getattr(other, quantity)
+            assert np.abs(a - b).max() <= 1e-10 * np.abs(b).max(), quantity
+
+
+def test_threads_of_the_environment(monkeypatch):
+    crossing = crossings(BRIDGES["plain"])[0]
+    monkeypatch.setenv("AXLESPAN_THREADS", "2")
+    assert simulate(crossing, time_step=2e-3, steps=5).facts["threads"] == 2
+    assert simulate(crossing, time_step=2e-3, steps=5, threads=1).facts["threads"] == 1
+    monkeypatch.setenv("AXLESPAN_THREADS", "many")
+    with pytest.raises(InputError, match="must be a whole number of at least 1") as caught:
+        simulate(crossing, time_step=2e-3, steps=5)
+    assert caught.value.field == "AXLESPAN_THREADS"
+    with pytest.raises(InputError, match="must be a whole number of at least 1"):
+        simulate(crossing, time_step=2e-3, steps=5, threads=0)
+
+
 def test_the_method_follows_all_trains():
     """One wheel with mass among them damps all; the footprint is each train's own affair."""
     bridge = BRIDGES["plain"]

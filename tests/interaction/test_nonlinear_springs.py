@@ -280,14 +280,16 @@ def test_each_law_equals_a_plain_newton_march(name, alpha):
     k_ref = law.stiffness
     b = np.asarray(s.nonlinear[0].rows.toarray())[0][s.free]
     K = blocks.K_FF.toarray() - k_ref * np.outer(b, b)
-    Mm, C = blocks.M_FF.toarray(), blocks.C_FF.toarray()
+    Mm, C = blocks.M_FF.toarray(), blocks.C_FF.toarray() - law.reference_damping * np.outer(b, b)
     weight = s.weight(9.81)[s.free]
     path = structure.line()
 
     def plain(e, r, memory):
         if name == "unilateral with dashpot":
-            f = 3e6 * e + 2e4 * r
-            return (f, 3e6, 2e4) if e < 0.0 and f < 0.0 else (0.0, 0.0, 0.0)
+            share = min(max(-e / 1e-6, 0.0), 1.0)  # the dashpot comes in over 1 µm
+            f = 3e6 * e + 2e4 * share * r
+            coming = -2e4 * r / 1e-6 if share < 1.0 else 0.0
+            return (f, 3e6 + coming, 2e4 * share) if e < 0.0 and f < 0.0 else (0.0, 0.0, 0.0)
         if name == "power":
             return 4e9 * e * abs(e), 8e9 * abs(e), 0.0
         if name == "multilinear":
@@ -391,3 +393,91 @@ def test_tangents_are_derivatives(name):
     if name in ("power", "multilinear"):
         slope = (law.energy(e + h, state) - law.energy(e - h, state)) / (2 * h)
         np.testing.assert_allclose(slope, law.force(e, r, state), rtol=1e-5, atol=1e-2)
+
+
+# --- springs in vehicles ------------------------------------------------------------------------------------
+
+
+def plain_car(law, method, dt, steps, profile, speed, start):
+    """Body and wheel on rigid ground with a bump stop between them: Newton by hand; the wheel is led by the ground."""
+    mass, wheel, k, c = 6000.0, 500.0, 1.2e6, 8e3
+    al, be, ga = method.alpha, method.beta, method.gamma
+    pos = start + speed * dt * np.arange(steps + 1)
+    r = profile.value(pos)
+    # The wheel's motion follows from the constraint and the Newmark relations, as for every wheel with mass.
+    w = np.zeros((steps + 1, 3))
+    w[0] = r[0], speed * profile.slope(pos[0]), speed**2 * profile.curvature(pos[0])
+    for i in range(steps):
+        u, v, a = w[i]
+        new = (r[i + 1] - u - dt * v - (0.5 - be) * dt**2 * a) / (be * dt**2)
+        w[i + 1] = r[i + 1], v + dt * ((1 - ga) * a + ga * new), new
+    z = np.zeros((steps + 1, 3))
+    z[0, 0] = r[0]  # at rest where it stands
+
+    def force(u, v, wheel):
+        inner, slope = law(u - wheel[0])
+        return -k * (u - wheel[0]) - c * (v - wheel[1]) - inner, -k - slope
+
+    f, _ = force(z[0, 0], z[0, 1], w[0])
+    z[0, 2] = f / mass
+    inner = [-f]
+    for i in range(steps):
+        u, v, a = z[i]
+        old, _ = force(u, v, w[i])
+        new = a
+        for _ in range(50):
+            nu = u + dt * v + (0.5 - be) * dt**2 * a + be * dt**2 * new
+            nv = v + dt * ((1 - ga) * a + ga * new)
+            f, slope = force(nu, nv, w[i + 1])
+            rest = mass * new - (1 + al) * f + al * old
+            change = rest / (mass - (1 + al) * (be * dt**2 * slope - ga * dt * c))
+            new -= change
+            if abs(change) < 1e-13 * max(abs(new), 1.0):
+                break
+        nu = u + dt * v + (0.5 - be) * dt**2 * a + be * dt**2 * new
+        nv = v + dt * ((1 - ga) * a + ga * new)
+        z[i + 1] = nu, nv, new
+        inner.append(-force(nu, nv, w[i + 1])[0])
+    # X: wheel m a = (1+al) (X + q) - al (X + q) of the step before, q = -(spring force) - weight
+    net = np.zeros(steps + 1)
+    net[0] = wheel * w[0, 2]
+    for i in range(steps):
+        net[i + 1] = (wheel * w[i + 1, 2] + al * net[i]) / (1 + al)
+    return z, net + (mass + wheel) * G - np.array(inner)
+
+
+@pytest.mark.parametrize("alpha", [0.0, -0.1])
+@pytest.mark.parametrize("kind", ["bump stop", "friction"])
+def test_springs_in_a_vehicle_equal_a_plain_newton_march(alpha, kind):
+    """On rigid ground before the bridge; the suspension works against its bump stop."""
+    from axlespan.bridges.spans import simple_span
+    from axlespan.irregularity import Harmonic
+    from axlespan.vehicles.nonlinear import with_nonlinear_spring
+
+    bridge = simple_span(length=25.0, youngs_modulus=2.87e9, second_moment=2.9, mass_per_length=2303.0, elements=6)
+    car = sprung_mass(mass=6000.0, stiffness=1.2e6, damping=8e3, unsprung_mass=500.0)
+    waves = Harmonic(amplitude=4e-3, wavelength=9.0)
+    if kind == "bump stop":
+        law, gap = UnilateralSpring(9e6), 2e-3
+
+        def plain(e):
+            return 9e6 * min(e + gap, 0.0), 9e6 * (e + gap < 0.0)
+    else:
+        law, gap = MultilinearSpring([(-1.0, -1e5 - 1e3), (-1e-4, -1e3), (1e-4, 1e3), (1.0, 1e5 + 1e3)]), 0.0
+
+        def plain(e):
+            slope = 1e7 if abs(e) < 1e-4 else 1e5 / (1.0 - 1e-4)
+            return (1e7 * e, slope) if abs(e) < 1e-4 else (np.sign(e) * (1e3 + slope * (abs(e) - 1e-4)), slope)
+
+    own = with_nonlinear_spring(car, law, {"body.z": 1.0, "wheel1.z": -1.0}, gap=gap, name=kind)
+    method, dt, steps = Alpha(alpha), 1e-3, 300
+    crossing = Crossing(bridge, Train.of(own), speed=30.0, start=-9.2, irregularity=waves)
+    result = simulate(crossing, time_step=dt, steps=steps + 300, method=method)
+    z, force = plain_car(plain, method, dt, steps, waves, 30.0, -9.2)
+    body, now = result.at("vehicle_displacement", "1.body.z")[: steps + 1], slice(0, steps + 1)
+    if kind == "bump stop":
+        assert (result.at("vehicle_displacement", "1.wheel1.z")[now] - body).max() > gap
+    assert np.abs(body - z[:, 0])[:290].max() < 1e-8 * np.abs(body).max()
+    assert np.abs(result.contact_force[now, 0] - force)[:290].max() < 1e-8 * 6500.0 * G
+    assert result.checks["energy_residual"] < 1e-9
+    assert result.facts["nonlinear_springs_active"] == 1

@@ -76,7 +76,9 @@ def copy(beam, tmp_path):
 def chromium() -> str:
     """Path of a Chromium, or the test is skipped with what is missing."""
     named = os.environ.get("AXLESPAN_CHROMIUM")
-    found = named or next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+    found = named or next(
+        filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None
+    )
     if not found:
         pytest.skip("no Chromium: apt-get install chromium, or set AXLESPAN_CHROMIUM to its path")
     return found

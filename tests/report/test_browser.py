@@ -1,3 +1,4 @@
+# ruff: noqa: E501
 """The pages in a real browser: they draw, react, ask nobody, and show the numbers of result.nc."""
 
 from __future__ import annotations
@@ -41,9 +42,20 @@ def test_the_demo_opens_and_draws_everything(beam, read):
     found = drawn(reader)
     assert len(found) >= 10 and all(found)
     titles = reader.run("[...document.querySelectorAll('#contents a')].map(a => a.textContent)")
-    assert titles == ["Case", "Animation", "Verdicts", "Histories", "Maps", "Contact forces", "Spectra", "Extremes"]
+    assert titles == [
+        "Case",
+        "Animation",
+        "Verdicts",
+        "Histories",
+        "Maps",
+        "Contact forces",
+        "Spectra",
+        "Extremes",
+    ]
     assert reader.page.query_selector("#stage canvas").evaluate(NOT_BLANK)
-    assert reader.run("document.querySelectorAll('.sketch rect, .sketch circle').length") == 3  # deck, body, wheel
+    assert (
+        reader.run("document.querySelectorAll('.sketch rect, .sketch circle').length") == 3
+    )  # deck, body, wheel
 
 
 def test_histories_are_those_of_the_result(beam, read):
@@ -125,7 +137,9 @@ def test_map_reads_the_values_along_the_line(beam, read):
     near = np.abs(result.time - time) < 2.2e-3  # half a cell and a step
     values = 1e3 * result.line_displacement[near, column]
     assert np.abs(values - value).min() < 2e-3 * np.abs(result.line_displacement).max() * 1e3
-    painted = reader.run("(m => [m.v.length, m.largest])(document.getElementById('map-line_displacement').map)")
+    painted = reader.run(
+        "(m => [m.v.length, m.largest])(document.getElementById('map-line_displacement').map)"
+    )
     assert painted[1] == pytest.approx(1e3 * np.abs(result.line_displacement).max(), rel=1e-4)
 
 
@@ -133,7 +147,9 @@ def test_animation_plays_and_scrubs(beam, read):
     """The scene at a time is that of the result: wheel, body and deflection."""
     result = read_result(beam / "result.nc")
     reader = read(beam)
-    reader.run("""() => { const s = document.getElementById('scrub'); s.value = 500; s.dispatchEvent(new Event('input')); }""")
+    reader.run(
+        """() => { const s = document.getElementById('scrub'); s.value = 500; s.dispatchEvent(new Event('input')); }"""
+    )
     state = reader.run(
         """() => { const { scene } = document.getElementById('player').player;
         return { t: scene.now, head: scene.head(), body: scene.dof('1.body.z'), w: scene.w(12.5), ratio: scene.ratio(0) }; }"""
@@ -154,8 +170,12 @@ def test_animation_plays_and_scrubs(beam, read):
     assert reader.run(picture) != before
     stopped = reader.run("document.getElementById('player').player.scene.now")
     reader.page.keyboard.press("ArrowLeft")
-    assert reader.run("document.getElementById('player').player.scene.now") == pytest.approx(stopped - 0.9 / 400)
-    reader.run("""() => { const s = document.getElementById('exaggeration'); s.value = 1; s.dispatchEvent(new Event('input')); }""")
+    assert reader.run("document.getElementById('player').player.scene.now") == pytest.approx(
+        stopped - 0.9 / 400
+    )
+    reader.run(
+        """() => { const s = document.getElementById('exaggeration'); s.value = 1; s.dispatchEvent(new Event('input')); }"""
+    )
     assert reader.run("document.getElementById('player').player.state.factor") == 10
 
 
@@ -163,7 +183,9 @@ def test_long_trains_are_thinned_without_losing_a_peak(train, read):
     result = read_result(train / "result.nc")
     reader = read(train)
     assert (train / "report.html").stat().st_size < 3e6
-    peak = reader.run("(d => [Math.min(...d[1]), d[0].length])(document.getElementById('plot-displacement').plot.u.data)")
+    peak = reader.run(
+        "(d => [Math.min(...d[1]), d[0].length])(document.getElementById('plot-displacement').plot.u.data)"
+    )
     assert peak[0] == pytest.approx(1e3 * result.sensor_displacement.min(), rel=1e-6)
     assert 1000 < peak[1] <= 6000 < len(result.time)
     names = reader.run("document.getElementById('plot-contact').plot.series.map(s => s.name)")
@@ -234,7 +256,9 @@ def test_theme_button(beam, read):
 
 
 def test_phone_does_not_scroll_sideways(solid, read):
-    reader = read(solid, viewport={"width": 360, "height": 740}, device_scale_factor=2, is_mobile=True, has_touch=True)
+    reader = read(
+        solid, viewport={"width": 360, "height": 740}, device_scale_factor=2, is_mobile=True, has_touch=True
+    )
     assert reader.run("document.documentElement.scrollWidth") <= 360
     assert all(drawn(reader))
 
@@ -257,10 +281,23 @@ def test_all_by_keyboard(beam, read):
     for _ in range(40):
         reader.page.keyboard.press("Tab")
         seen.append(
-            reader.run("(e => [e.id || e.className || e.tagName, getComputedStyle(e).outlineStyle])(document.activeElement)")
+            reader.run(
+                "(e => [e.id || e.className || e.tagName, getComputedStyle(e).outlineStyle])(document.activeElement)"
+            )
         )
     names = [name for name, _ in seen]
-    for name in ("skip", "theme", "print", "stage", "play", "scrub", "speed", "exaggeration", "view", "canvas"):
+    for name in (
+        "skip",
+        "theme",
+        "print",
+        "stage",
+        "play",
+        "scrub",
+        "speed",
+        "exaggeration",
+        "view",
+        "canvas",
+    ):
         assert name in names, name
     assert all(style != "none" for _, style in seen)
     unnamed = reader.run(

@@ -34,7 +34,9 @@ def text_of(page: str) -> str:
 
 
 def content_of(page: str) -> dict:
-    (found,) = re.findall(r'<script type="application/json" id="content">(.*?)</script>', page, flags=re.DOTALL)
+    (found,) = re.findall(
+        r'<script type="application/json" id="content">(.*?)</script>', page, flags=re.DOTALL
+    )
     return json.loads(found)
 
 
@@ -50,7 +52,10 @@ def report(*words):
 
 def test_the_case_in_plain_words(beam):
     text = text_of((beam / "report.html").read_text(encoding="utf-8"))
-    assert "A train (sprung mass; 1 wheel) crosses a structure (simple span, 25 m long) at 100 km/h (27.78 m/s)." in text
+    assert (
+        "A train (sprung mass; 1 wheel) crosses a structure (simple span, 25 m long) at 100 km/h (27.78 m/s)."
+        in text
+    )
     assert "The running surface is even." in text
     assert "computed over 0.9 s in 900 steps of 1 ms" in text
     assert "Largest displacement of a sensor −2.407 mm at midspan" in text  # the paper's figure 3: -2.41 mm
@@ -101,7 +106,10 @@ def test_geometry_goes_along_with_the_result(train, solid):
 def test_results_without_geometry_are_drawn_by_their_names(train, tmp_path):
     result = read_result(train / "result.nc")
     write_result(result, tmp_path / "result.nc")
-    write_summary(summary(result, title="No geometry") | {"run": {"structure_from_m": 0.0, "structure_to_m": 25.0}}, tmp_path / "summary.json")
+    write_summary(
+        summary(result, title="No geometry") | {"run": {"structure_from_m": 0.0, "structure_to_m": 25.0}},
+        tmp_path / "summary.json",
+    )
     content = content_of(result_page(tmp_path))
     assert len(content["scene"]["units"]) == 30
     assert [unit["wheels"][0][1] for unit in content["scene"]["units"]] == pytest.approx(3.0 * np.arange(30))
@@ -113,7 +121,8 @@ def test_verdicts_show_how_much_is_used():
          "utilization": 0.8, "where": "midspan", "when": 1.25, "outcome": "pass", "source": "from memory"},
         {"clause": "EN 1990 A2.4.4.2.2", "quantity": "twist", "value": None, "limit": None, "unit": "m",
          "utilization": None, "where": "", "when": None, "outcome": "not assessed", "reason": "one rail only"},
-        {"clause": "EN 14363", "quantity": "unloading <Q/Q0>", "value": 0.9, "limit": 0.6, "unit": "", "utilization": 1.5, "outcome": "fail"},
+        {"clause": "EN 14363", "quantity": "unloading <Q/Q0>", "value": 0.9, "limit": 0.6, "unit": "",
+         "utilization": 1.5, "outcome": "fail"},
     ]  # fmt: skip
     table = verdict_table({"verdicts": rows})
     text = text_of(table)
@@ -208,7 +217,9 @@ def test_missing_histories_are_told_and_the_rest_is_there(copy, gone, words):
     content, text = content_of(page), text_of(page)
     assert words is None or f"The file has {words}." in text
     keys = {panel["key"] for panel in content["panels"]}
-    assert {"acceleration", "contact", "reaction"} <= keys and ("displacement" in keys) == (gone != "sensor_displacement")
+    assert {"acceleration", "contact", "reaction"} <= keys and ("displacement" in keys) == (
+        gone != "sensor_displacement"
+    )
     assert (content["scene"] is None) == (gone == "contact_position")
     assert len(content["maps"]) == (1 if gone == "line_displacement" else 2)
 
@@ -239,7 +250,9 @@ def test_a_failed_run_shows_what_was_computed(copy):
 def test_a_result_with_one_time(copy):
     result = read_result(copy / "result.nc")
     names = [name for name in vars(result) if isinstance(getattr(result, name), np.ndarray)]
-    few = {name: getattr(result, name)[:1] for name in names if len(getattr(result, name)) == len(result.time)}
+    few = {
+        name: getattr(result, name)[:1] for name in names if len(getattr(result, name)) == len(result.time)
+    }
     write_result(replace(result, **few), copy / "result.nc")
     page = result_page(copy)
     assert "fewer than two times: there is nothing to plot" in text_of(page)
@@ -289,8 +302,14 @@ def test_packed_arrays_unpack():
 def test_libraries_are_the_published_ones():
     """Checksums of what is bundled, as vendor/README.md gives them."""
     vendor = files("axlespan.report") / "vendor"
-    listed = re.findall(r"^\| `(\S+)` \|.*\| `([0-9a-f]{64})` \|$", (vendor / "README.md").read_text(), flags=re.MULTILINE)
-    assert {name for name, _ in listed} == {"uplot/uPlot.iife.min.js", "uplot/uPlot.min.css", "three/three-parts.min.js"}
+    listed = re.findall(
+        r"^\| `(\S+)` \|.*\| `([0-9a-f]{64})` \|$", (vendor / "README.md").read_text(), flags=re.MULTILINE
+    )
+    assert {name for name, _ in listed} == {
+        "uplot/uPlot.iife.min.js",
+        "uplot/uPlot.min.css",
+        "three/three-parts.min.js",
+    }
     for name, digest in listed:
         assert hashlib.sha256(vendor.joinpath(*name.split("/")).read_bytes()).hexdigest() == digest, name
     for name in ("uplot", "three"):

@@ -212,7 +212,7 @@ def test_critical_speeds(found, crossing):
     verdict = found["critical_speed"]
     near = [f * 12.0 / i for f in (f1, f2) for i in (1, 2, 3, 4)]
     assert verdict.value == pytest.approx(min(near, key=lambda speed: abs(speed - 60.0)))
-    assert "with d = 12 m; the run has 216 km/h" in verdict.note
+    assert "with d = 12 m from vehicle to vehicle; the run has 216 km/h" in verdict.note
     assert f"{3.6 * f2 * 12.0 / 3.0:.0f} (f2 d/3)" in verdict.note  # 207 km/h
 
 

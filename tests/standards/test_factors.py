@@ -20,6 +20,7 @@ from axlespan.standards.dynamic_analysis import (
     TRAINS,
     load_model,
     need_of_dynamic_analysis,
+    regular_distance,
     resonance_speeds,
     speeds_to_analyze,
 )
@@ -162,6 +163,33 @@ def test_trains_and_speeds():
     assert np.all(np.diff(speeds) > 0.0) and np.diff(speeds).max() <= 5.0 + 1e-9
     assert {69.5, 70.75, 72.0, 73.25, 74.5} <= set(speeds.tolist())
     assert speeds_to_analyze(30.0)[-1] == pytest.approx(36.0)  # a line slower than 40 m/s
+
+
+# EN 1991-2 table 6.3: number of intermediate coaches, coach length D and bogie axle spacing d of HSLM-A1 to A10.
+HSLM_A = [
+    *((18, 18, 2.0), (17, 19, 3.5), (16, 20, 2.0), (15, 21, 3.0), (14, 22, 2.0)),
+    *((13, 23, 2.0), (13, 24, 2.0), (12, 25, 2.5), (11, 26, 2.0), (11, 27, 2.0)),
+]
+
+
+@pytest.mark.parametrize(("coaches", "length", "spacing"), HSLM_A)
+def test_regular_distance_of_load_trains(coaches, length, spacing):
+    begin = 17.0 + 0.5 * 3.525
+    end = begin + (coaches + 2) * length + 0.5 * 3.525 + 17.0
+    ends = [0.0, 3.0, 14.0, 17.0, 20.525, 20.525 + spacing]
+    shared = [
+        begin + i * length + side for i in range(1, coaches + 2) for side in (-spacing / 2, spacing / 2)
+    ]
+    axles = np.array(sorted([*ends, *shared, *(end - x for x in ends)]))
+    assert len(axles) == 2 * coaches + 14
+    assert regular_distance(np.full(len(axles), 2e5), axles) == pytest.approx(length, rel=0.01)
+
+
+def test_an_irregular_train_has_no_distance():
+    rng = np.random.default_rng(5)
+    behind = np.sort(rng.uniform(0.0, 400.0, 60))
+    assert regular_distance(np.full(60, 1e5), behind - behind[0]) is None
+    assert regular_distance(np.full(4, 1e5), np.array([0.0, 18.0, 36.0, 54.0])) is None
 
 
 @pytest.mark.parametrize(

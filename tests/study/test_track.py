@@ -183,3 +183,74 @@ def test_what_is_found_when_it_is_built(loaded, name):
     with pytest.raises(InputError) as caught:
         build(loaded(*edits))
     assert str(caught.value) == message
+
+
+GRID = (
+    ("  kind: simple-span", "  kind: beam-grid"),
+    ("  second_moment: 0.9 m^4", "  girders: [-3 m, -1 m, 1 m, 3 m]"),
+    (
+        "  mass_per_length: 12 t/m",
+        "  girder: {second_moment: 0.4 m^4, torsion_constant: 0.02 m^4, area: 1.2 m^2, mass_per_length: 3 t/m}\n"
+        "  cross_beam: {second_moment: 0.02 m^4, torsion_constant: 0.02 m^4, area: 0.5 m^2}\n"
+        "  skew: 30 deg\n  bearings: {stiffness: 3 GN/m, damping: 1 MNs/m}",
+    ),
+)
+
+
+class TestGrids:
+    def test_a_skew_deck_with_track(self, loaded):
+        built = build(loaded(*GRID, *tracked("ballasted")))
+        structure = built.crossing.structure
+        assert {"main", "rail", "left", "right", "deck"} <= set(structure.lines)
+        shift = 0.75 * np.tan(np.radians(30.0))
+        approach = -structure.line().start - shift
+        assert approach == pytest.approx(0.6 * np.ceil(49.0 / 0.6))
+        assert "girder4.end.z" in structure.system.support_names
+
+    @pytest.mark.parametrize(
+        ("change", "message"),
+        [
+            (
+                ("skew: 30 deg", "skew: 80 deg"),
+                "structure.skew = 80 deg: must be at most 60 deg to either side",
+            ),
+            (("elements: 20", "elements: 20\n  cross_beams: 7"), "must divide the 20 elements of a girder"),
+            (("skew: 30 deg", "track_centers: [5 m]"), "must lie between the outer girders, -3 and 3 m"),
+        ],
+    )
+    def test_bad_grids(self, loaded, change, message):
+        with pytest.raises(InputError) as caught:
+            build(loaded(*GRID, change))
+        assert message in str(caught.value)
+
+
+class TestMeshes:
+    def test_track_on_a_beam_of_solids(self, loaded):
+        """The solid's end sections hold it as pins do; under stiff track it bends as a beam."""
+        mesh = (
+            "  kind: mesh\n  mesh: {box: {lengths: [25 m, 1.5 m, 2 m], divisions: [50, 2, 2]}}\n"
+            "  materials: {concrete: {youngs_modulus: 34 GPa, poisson_ratio: 0.2, density: 2500 kg/m^3}}\n"
+            "  sections: {volume: {material: concrete}}\n"
+            "  supports:\n    - {name: left, at: {x: 0 m, z: 1 m}, fixed: [x, y, z]}\n"
+            "    - {name: right, at: {x: 25 m, z: 1 m}, fixed: [y, z]}\n"
+            "  running_lines: {left: {nodes: {y: 1.5 m, z: 2 m}}, right: {nodes: {y: 0 m, z: 2 m}}}\n"
+            "  track: {kind: ballasted, approach: 26 m, exit: 26 m}\n"
+        )
+        text = (
+            "  kind: simple-span\n  length: 25 m\n  youngs_modulus: 34 GPa\n  second_moment: 0.9 m^4\n"
+            "  mass_per_length: 12 t/m\n  elements: 20\n"
+            "  damping: {kind: rayleigh, ratio: 1 %, frequencies: [3 Hz, 12 Hz]}\n"
+        )
+        case = loaded(
+            (text, mesh), ("speed: 80 km/h", "speed: 80 km/h\n  start: 22.5 m"), ("steps: 2000", "steps: 1")
+        )
+        built = build(case)
+        result = run_plan(built.plan)
+        force = 5750.0 * 9.81
+
+        def beam(a):  # deflection at midspan per unit force at a
+            b = min(a, 25.0 - a)
+            return b * (3 * 25.0**2 - 4 * b**2) / (48 * 34e9 * 1.5 * 2.0**3 / 12)
+
+        exact = -force * (beam(22.5) + beam(12.5) + beam(2.5))
+        assert result.sensor_displacement[0, 0] == pytest.approx(exact, rel=0.04)  # with shear

@@ -3,7 +3,7 @@
 import pytest
 
 from axlespan.errors import InputError
-from axlespan.study.case_train import Unit, first_wheels
+from axlespan.study.case_placing import Unit, first_wheels
 
 CAR = """\
   - vehicle: multibody

@@ -97,7 +97,8 @@ def beam_grid(
     skew : float
         Angle of the bearing lines against the perpendicular of the axis [rad].
     lines : mapping of name to y, optional
-        Running lines [m]. Those of the tracks when left out.
+        Running lines [m]; those of the tracks when left out. There are always ``girder1``, … over the girders,
+        on which section forces can be asked for.
     track_centers : sequence of float, optional
         Lateral positions [m] of tracks, 0 when left out. The first one has the lines ``main`` in its middle and
         ``left`` and ``right`` under its rails, further ones ``main2``, ``left2``, ``right2``, …
@@ -135,9 +136,8 @@ def beam_grid(
         model = model.with_beams(pairs, section.properties(material), name=title)
     model = _on_bearings(model, nodes, bearing_stiffness, bearing_damping).with_damping(damping)
     compiled = compile_model(model)
-    wanted = dict(lines) if lines is not None else _track_lines(track_centers)
-    if not wanted:
-        raise InputError("must name at least one", field="lines", value={})
+    on_girders = {f"girder{number + 1}": float(at) for number, at in enumerate(y)}
+    wanted = {**(dict(lines) if lines is not None else _track_lines(track_centers)), **on_girders}
     paths = {name: _line(model, compiled, nodes, y, slope, name, at) for name, at in wanted.items()}
     return Structure(compiled.system, paths, name, model, {"length": length, "skew": skew})
 

@@ -30,7 +30,7 @@ from axlespan.bridges.track_model import Side, TrackBuilder
 from axlespan.errors import InputError
 from axlespan.linalg.low_rank import LowRank
 from axlespan.model.compile import Compiled, compile_model, dof_table
-from axlespan.model.damping import Rayleigh
+from axlespan.model.damping import Modal, Rayleigh
 from axlespan.model.model import Model, Tie
 from axlespan.model.system import System
 from axlespan.running.geometry import LineGeometry
@@ -45,6 +45,8 @@ IntArray = npt.NDArray[np.int64]
 HALF_GAUGE = 0.75
 _SIDES = ("left", "right")
 _MOST_RAIL_ELEMENTS = 20
+# Modes of the deck that modal damping acts on unless it says how many, as for large models without track.
+_DECK_MODES = 40
 
 
 def with_track(
@@ -122,7 +124,9 @@ def with_track(
     model, bases = bases_under(model, cut, layout, names, geometry, dof_table(cut.model))
     model, rails = _laid(model, track, layout, geometry, bases, _count(rail_elements))
     compiled = compile_model(model)
-    system = _with_deck_damping(compiled.system, cut.system)
+    system = _with_deck_damping(
+        compiled.system, cut.system, limited=isinstance(damping, Modal) and damping.modes is None
+    )
     lines = _rail_lines(model, compiled, layout, rails)
     decks = {name: _moved(path, cut.system, system) for name, path in cut.lines.items()}
     lines |= {
@@ -281,13 +285,15 @@ def _moved(path: PolynomialPath, old: System, new: System) -> PolynomialPath:
     return path.renumbered(_numbers(old, new))
 
 
-def _with_deck_damping(system: System, bridge: System) -> System:
-    """Modal damping of the bridge, by the modes of the bridge alone."""
+def _with_deck_damping(system: System, bridge: System, *, limited: bool) -> System:
+    """Modal damping of the bridge, by the modes of the bridge alone, or a limited number of them."""
     if bridge.modal_damping is None:
         return system
+    damping = bridge.modal_damping
+    own = damping.vectors[:, : _DECK_MODES if limited else None]
     whole = np.full(system.size, -1, dtype=np.int64)
     whole[system.free] = np.arange(len(system.free))
     rows = whole[_numbers(bridge, system)[bridge.free]]
-    vectors = np.zeros((len(system.free), bridge.modal_damping.vectors.shape[1]))
-    vectors[rows] = bridge.modal_damping.vectors
-    return replace(system, modal_damping=LowRank(vectors, bridge.modal_damping.coefficients))
+    vectors = np.zeros((len(system.free), own.shape[1]))
+    vectors[rows] = own
+    return replace(system, modal_damping=LowRank(vectors, damping.coefficients[: own.shape[1]]))

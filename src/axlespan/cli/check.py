@@ -16,6 +16,7 @@ from axlespan.irregularity import spectrum_names
 from axlespan.linalg.eigen import lowest_modes
 from axlespan.linalg.factor import choose
 from axlespan.model.system import System
+from axlespan.standards import bridge_facts
 from axlespan.study.build import WARNING, BuiltCase, build
 from axlespan.study.loader import load_case
 from axlespan.study.size import Size, size_text
@@ -63,6 +64,7 @@ def _description(built: BuiltCase, size: Size) -> list[str]:
         f"  analysis    {settings.steps} steps of {settings.time_step:g} s, alpha = {settings.method.alpha:g}, "
         f"{settings.coupling} method",
         f"  solver      {_solver(built)}",
+        *_rules(built),
         f"  size        {size.kept_times} times of {size.values} values, at most {size_text(size.result)}; memory for the "
         f"run about {size_text(size.memory)}",
     ]
@@ -94,6 +96,15 @@ def _frequencies(built: BuiltCase) -> str:
     except AxlespanError as error:  # it runs without them
         return f"frequencies not found: {error}"
     return f"frequencies {', '.join(f'{f:.4g}' for f in modes.frequencies)} Hz"
+
+
+def _rules(built: BuiltCase) -> list[str]:
+    """What the rules take the bridge for, if the case is to be assessed."""
+    asked = built.loaded.case.assessment
+    if asked is None:
+        return []
+    facts = bridge_facts(built.crossing.structure, asked.wanted())
+    return [f"  rules       {facts.words}; {len(asked.checks)} checks"]
 
 
 def _solver(built: BuiltCase) -> str:

@@ -7,6 +7,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
+from axlespan.linalg.compiled import when_compiling
+
 # Characters: of the bar, of a title below which it says nothing, and of all numbers but those of the steps.
 _BAR, _FEWEST, _NUMBERS = 24, 8, 38
 
@@ -52,5 +54,9 @@ def progress(steps: Steps, title: str) -> Iterator[None]:
             speed = bar.tasks[0].speed
             bar.update(task, completed=done, rate=f"{speed:,.0f}/s" if speed else "")
 
+        def compiling(begins: bool) -> None:
+            bar.update(task, rate="compiling, once" if begins else "")
+
         steps.show = show
-        yield
+        with when_compiling(compiling):
+            yield

@@ -36,7 +36,9 @@ class Blocks:
     first: IntArray  # (n_block + 1,) where the d.o.f. of each begin
     kind: IntArray  # (n_block,)
     begin: IntArray  # (n_kind,) where the rows of each kind begin in entries
-    entries: FloatArray  # rows of [-A⁻¹ K, -A⁻¹ C, A⁻¹] of all kinds; the second block only where there is damping
+    entries: (
+        FloatArray  # rows of [-A⁻¹ K, -A⁻¹ C, A⁻¹] of all kinds; the second block only where there is damping
+    )
     inverses: tuple[FloatArray, ...]  # A⁻¹ (m, m) by kind
 
     @classmethod

@@ -105,6 +105,10 @@ class Integrator:
         Δt [s].
     solver : str
         Kind of factor, see :func:`axlespan.linalg.factor.factorize`.
+    threads : int
+        Threads of a solve, where the factor can use them.
+    columns : int
+        States that will advance side by side, for the choice of a factor.
 
     Notes
     -----
@@ -112,7 +116,17 @@ class Integrator:
     :class:`Stepper` makes it in two halves, with contact forces solved for in between.
     """
 
-    def __init__(self, matrices: Matrices, method: Alpha, time_step: float, *, solver: str = "auto") -> None:
+    def __init__(
+        self,
+        matrices: Matrices,
+        method: Alpha,
+        time_step: float,
+        *,
+        solver: str = "auto",
+        threads: int = 1,
+        columns: int = 1,
+    ) -> None:
+        self.threads, self.columns_at_once = threads, columns
         self.matrices, self.method, self.time_step = matrices, method, float(time_step)
         beta, gamma, dt = method._beta, method._gamma, self.time_step
         self.weight_c, self.weight_p = 1.0 + method.alpha, -method.alpha
@@ -159,7 +173,7 @@ class Integrator:
 
     def factor_of(self, effective: sp.csr_array, solver: str = "auto") -> Factor:
         """Factor of an effective matrix (n, n), the low-rank damping included."""
-        factor = factorize(effective, kind=solver)
+        factor = factorize(effective, kind=solver, threads=self.threads, columns=self.columns_at_once)
         low_rank = self.matrices.C_low_rank
         if low_rank is None:
             return factor
@@ -252,9 +266,7 @@ class Stepper:
             np.matmul(self._means, values.reshape(3, -1), out=self._rows)
             if self._dense is not None:
                 if forceless:
-                    np.dot(
-                        self._forceless, self._stacked[: self._forceless.shape[1]], out=self.acceleration
-                    )
+                    np.dot(self._forceless, self._stacked[: self._forceless.shape[1]], out=self.acceleration)
                 else:
                     np.dot(self._dense, self._stacked, out=self.acceleration)
                 return

@@ -91,7 +91,9 @@ def complete(
         a[i] = new
 
 
-def read_ahead(where: Any, dt: float, late: float, new: float, values: Any, acceleration: Any, result: Any) -> None:
+def read_ahead(
+    where: Any, dt: float, late: float, new: float, values: Any, acceleration: Any, result: Any
+) -> None:
     """Fill ``result`` (m,) with displacements at the new time at flat positions, as far as known."""
     u, v, a = values[0], values[1], values[2]
     for i in range(where.shape[0]):

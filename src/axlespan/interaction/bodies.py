@@ -7,6 +7,7 @@ the fleet holds the vehicles of all.
 
 from __future__ import annotations
 
+from copy import copy
 from functools import cache
 
 import numpy as np
@@ -24,6 +25,7 @@ from axlespan.linalg.products import Product
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
+
 class PreparedStructure:
     """A structure, factored for one method and time step: serves every train, speed and irregularity."""
 
@@ -36,9 +38,19 @@ class PreparedStructure:
         *,
         loaded: int | None = None,
         solver: str = "auto",
+        threads: int = 1,
+        lanes: int = 1,
     ) -> None:
-        self.integrator = Integrator(matrices, method, time_step, solver=solver)
+        self.integrator = Integrator(
+            matrices, method, time_step, solver=solver, threads=threads, columns=lanes
+        )
         self.columns = PathColumns(self.integrator, path_dofs, loaded)
+
+    def for_others(self) -> PreparedStructure:
+        """The same factored structure for crossings that advance by themselves."""
+        other = copy(self)
+        other.columns = self.columns.for_others()
+        return other
 
     def body(self, states: list[State], loads: list[FloatArray]) -> StructureBody:
         """The structure at the states of several crossings, under their Eᵀ X (n,)."""
@@ -177,6 +189,7 @@ class FleetBody:
         self._columns = Product(sp.csr_array(self.integrator.weight_c * columns))
         self.static = fleet.weight[fleet.coupled]  # (n_coupled,) [N]
         self.forces = forces.copy()  # (n_coupled,) of the last completed step [N]
+        self.inner: FloatArray | None = None  # (n,) what nonlinear springs add at that step [N]
 
     def _unit_responses(self) -> sp.csr_array:
         """A⁻¹ I_Xᵀ (n, n_coupled), one block for each vehicle: wheels of the same rank are solved for together."""
@@ -208,6 +221,8 @@ class FleetBody:
         stepper = self.stepper
         stepper.force[...] = 0.0
         stepper.force[self.fleet.dofs] = self.integrator.weight_p * self.forces - self.static
+        if self.inner is not None:
+            stepper.force += self.integrator.weight_p * self.inner
         stepper.predict()
 
     def at_wheels(self) -> FloatArray:

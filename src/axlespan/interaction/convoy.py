@@ -8,6 +8,7 @@ the stretch without it, so that nothing of it reaches them.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,7 +27,10 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 # Steps of a stretch, and the entries of contact systems that one may hold.
-_STRETCH, _ENTRIES = 256, 4_000_000
+_STRETCH, _ENTRIES = 256, 12_000_000
+
+# There is something to tell about every half a second; what a step takes for each byte of the factor [s].
+_NEWS, _PER_BYTE = 0.5, 2e-10
 
 
 @dataclass(eq=False)
@@ -84,7 +88,10 @@ class Convoy:
     def stretch(self, *, systems: bool = True) -> Stretch:
         """The next steps: as many as every lane still has, and as memory allows."""
         size = sum(plan.rows.n_contact**2 for plan in self.plans)
-        n_step = min(max(16, min(_STRETCH, _ENTRIES // max(size, 1))), *(lane.left for lane in self.lanes))
+        seconds = _PER_BYTE * self.prepared.integrator.factor.nbytes * len(self.lanes)
+        often = int(_NEWS / max(seconds, _NEWS / _STRETCH))
+        n_step = max(16, min(_STRETCH, _ENTRIES // max(size, 1), often))
+        n_step = min(n_step, *(lane.left for lane in self.lanes))
         return stretch_of(
             self.plans, self.lanes[0].done + 1, n_step, self.structure, self.fleet, systems=systems
         )
@@ -155,7 +162,24 @@ Couple = Callable[[Convoy, Stretch, int, FloatArray | None], FloatArray]
 def drive(
     lanes: Sequence[Lane], prepared: PreparedStructure, couple: Couple, *, systems: bool = True
 ) -> None:
-    """Advance all lanes to their ends; failed ones keep their error and what was computed."""
+    """Advance all lanes to their ends; failed ones keep their error and what was computed.
+
+    With several threads, each takes its share of the lanes, unless the factor's own solves use them.
+    """
+    threads = min(lanes[0].plan.settings.threads, len(lanes)) if lanes else 1
+    if threads > 1 and prepared.integrator.factor.name != "pardiso":
+        shares = [lanes[i * len(lanes) // threads : (i + 1) * len(lanes) // threads] for i in range(threads)]
+        with ThreadPoolExecutor(threads) as pool:
+            runs = [
+                pool.submit(_drive, share, prepared.for_others(), couple, systems=systems) for share in shares
+            ]
+        for run in runs:
+            run.result()
+        return
+    _drive(lanes, prepared, couple, systems=systems)
+
+
+def _drive(lanes: Sequence[Lane], prepared: PreparedStructure, couple: Couple, *, systems: bool) -> None:
     convoy = Convoy(lanes, prepared)
     for lane in lanes:
         lane.recorder.begin(lane.structure, lane.fleet, lane.forces, lane.load)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 from axlespan.card import Card, Shown
 from axlespan.contact.motion import Course, SpeedHistory
@@ -26,6 +27,8 @@ Irregularity = Profile | Mapping[str, Profile]
 class Movement:
     """How a train moves; the parameters are those of :class:`Crossing`."""
 
+    _called: ClassVar[str] = "crossing"  # in errors
+
     speed: float | None = None
     speed_history: Sequence[Sequence[float]] | None = None
     acceleration: float | None = None
@@ -38,9 +41,11 @@ class Movement:
 
     def __post_init__(self) -> None:
         if (self.speed is None) == (self.speed_history is None):
-            raise InputError("must be given either as speed or as speed_history", field="crossing.speed")
+            raise InputError(
+                "must be given either as speed or as speed_history", field=f"{self._called}.speed"
+            )
         if self.start is not None and not abs(self.start) < float("inf"):
-            raise InputError("must be a finite number", field="crossing.start", value=self.start)
+            raise InputError("must be a finite number", field=f"{self._called}.start", value=self.start)
         if not 0.0 <= self.delay < float("inf"):
             raise InputError("must be zero or positive", field="delay", value=self.delay)
         if self.direction not in DIRECTIONS:
@@ -79,6 +84,8 @@ class OtherTrain(Movement):
     irregularity : Profile or mapping, optional
         That of the crossing when left out.
     """
+
+    _called: ClassVar[str] = "other train"
 
     train: Train
 
@@ -153,9 +160,11 @@ class Crossing(Shown, Movement):
             If a line is unknown.
         """
         runs: list[Run] = []
-        for moving in (self, *self.others):
+        trains: list[tuple[Movement, Train]] = [(self, self.train)]
+        trains += [(other, other.train) for other in self.others]
+        for moving, train in trains:
             first = sum(len(run.train.placements) for run in runs)
-            runs.append(self._run(moving, moving.train, first))
+            runs.append(self._run(moving, train, first))
         return tuple(runs)
 
     def _run(self, moving: Movement, train: Train, first: int) -> Run:

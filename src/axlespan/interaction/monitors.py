@@ -221,6 +221,9 @@ class EnergyMonitor:
         self._plan = plan
         self.restarted: Collection[int] = ()  # steps at which a wheel landed: they lose energy
         self.released: Collection[int] = ()  # steps after which a wheel let go
+        # Forces (n,) of nonlinear springs on the vehicles at the last completed step.
+        self.inner_of_fleet: Callable[[], FloatArray | None] | None = None
+        self._inner_before: FloatArray | None = None
         steps = plan.settings.steps
         count = max(_FEWEST_SAMPLES, min(_ENERGY_SAMPLES, _SAMPLED_DOFS // plan.structure.size))
         count = plan.settings.energy_samples or count
@@ -243,6 +246,7 @@ class EnergyMonitor:
         if step + 1 in self._samples:
             self._before = (structure.copy(), vehicles.copy(), load.copy(), forces.copy())
             self._before_step = step
+            self._inner_before = None if self.inner_of_fleet is None else self.inner_of_fleet()
 
     def _balance(
         self, step: int, structure: State, vehicles: State, load: FloatArray, forces: FloatArray
@@ -263,6 +267,11 @@ class EnergyMonitor:
                 vector = np.zeros(fleet.matrices.size)
                 vector[fleet.dofs] = values - fleet.weight[fleet.coupled]
                 on_wheels.append(vector)
+            if self.inner_of_fleet is not None:
+                for vector, inner in zip(
+                    on_wheels, (self._inner_before, self.inner_of_fleet()), strict=True
+                ):
+                    vector += 0.0 if inner is None else inner
             states, none = (vehicles_p, vehicles), np.zeros(fleet.matrices.size)
             own = _step_balance(plan, fleet.matrices, states, (on_wheels[0], on_wheels[1]), none)
             energy, imbalance = energy + own[0], imbalance + own[1]

@@ -33,7 +33,7 @@ def begin_nonlinear(plan: Plan, factors: StartFactors) -> tuple[Start, Nonlinear
     forces = begun.start.forces[plan.fleet.coupled]
     in_air = plan.laws.may_part & ~(forces > 0.0)
     flights = Flights(plan, in_air, plan.settings.lost_after)
-    field = SpringField(springs, begun.deviation)
+    field = SpringField(springs, begun.deviation, Springs.of_fleet(plan))
     coupling = NonlinearCoupling(plan.laws, balance, begun.approach, begun.touching, field, flights)
     return begun.start, coupling
 
@@ -44,6 +44,7 @@ def watch(coupling: NonlinearCoupling, recorder: Recorder) -> None:
     recorder.reactions.inner = coupling.field.on_supports
     recorder.more_checks = coupling.flights.checks
     recorder.more_facts = coupling.facts
+    recorder.energy.inner_of_fleet = coupling.field.fleet_force
     names = [name for name, is_in_air in zip(coupling.flights.names, coupling.flights.in_air, strict=True) if is_in_air]
     if names:
         recorder.notes.append(

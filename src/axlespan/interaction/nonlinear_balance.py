@@ -104,6 +104,7 @@ class Balance:
         touching: Mask,
         given: FloatArray,
         inner: FloatArray | None = None,
+        inner_of_fleet: FloatArray | None = None,
     ) -> tuple[FloatArray, float]:
         """Set the accelerations of both bodies; contact forces (n_contact,) [N], and the inertia that they leave out.
 
@@ -115,8 +116,8 @@ class Balance:
             Wheels without relative velocity; where they are one-sided, the force may not pull.
         given : array (n_contact,)
             Contact forces of all others, zero for those that touch.
-        inner : array (n,), optional
-            Further forces on the structure.
+        inner, inner_of_fleet : array (n,), optional
+            Further forces on the structure and on the vehicles.
         """
         plan, fleet, x = self.plan, self.plan.fleet, self.plan.fleet.coupled
         chosen = np.flatnonzero(touching)
@@ -128,6 +129,8 @@ class Balance:
         m = fleet.matrices
         own = -(m.K @ vehicles.u) - m.damping_force(vehicles.v)
         own[fleet.dofs] += given[x] - fleet.weight[x]
+        if inner_of_fleet is not None:
+            own += inner_of_fleet
         # Massless contact points that are held take the contact force; other massless d.o.f. are in balance.
         vehicles.a[:] = self.vehicle_mass.solve(where_mass(m, own, fleet.dofs[chosen]))
         on_structure, on_vehicles, system = self._responses(rows, chosen)

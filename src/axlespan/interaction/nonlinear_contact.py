@@ -75,13 +75,15 @@ class NonlinearCoupling:
         self.laws, self.balance, self.field, self.flights = laws, balance, field, flights
         self.approach, self.before = approach.copy(), approach.copy()  # of the last two steps
         self.touching = touching.copy()
-        held = np.concatenate([balance.plan.fleet.weight, field.springs.held if field.springs.n else []])
+        held = np.concatenate([balance.plan.fleet.weight, field.springs.held])
         self.scale = max(float(np.abs(held).max(initial=0.0)), 1.0)
         self.iterations: list[int] = []  # of each step
         self.residuals: list[float] = []  # of the slowest step
         self.landings, self.loss = 0, 0.0  # [J]
         self._stretch: Stretch | None = None
         self._off: list[_Group] = []
+        self._together = np.empty(0, dtype=np.int64)  # wheels that are solved for with the structure
+        self._whole: FloatArray | None = None  # their compliance, where vehicles have springs of their own
         self._dt = balance.plan.settings.time_step
 
     # --- one step ------------------------------------------------------------------------------
@@ -108,20 +110,25 @@ class NonlinearCoupling:
         self.field.take(structure, load, convoy.known_load(stretch, k))
         if fleet is None:
             return convoy.joint.weight
-        fleet.take(forces)
+        self.field.take_fleet(fleet, forces)
         self._after(convoy, step, forces, approach, free)
         return all_forces(convoy, fleet.forces)
 
     def _enter(self, convoy: Convoy, stretch: Stretch) -> None:
         """Sort the wheels of a stretch: vehicles wholly off the structure stand for themselves."""
         self._stretch, self._off = stretch, []
-        self.field.enter(convoy.structure)
+        self.field.enter(convoy.structure, convoy.fleet)
+        self._together = np.empty(0, dtype=np.int64)
         if convoy.fleet is None:
             return
         if convoy.structure.integrator.weight_p:
             self.balance.smoothed(convoy.structure.integrator.factor, convoy.fleet.integrator.factor)
         fleet = convoy.fleet.fleet
-        together = stretch.systems[0].contacts if stretch.systems else np.empty(0, dtype=np.int64)
+        self._together = stretch.systems[0].contacts if stretch.systems else np.empty(0, dtype=np.int64)
+        if self.field.n_fleet:  # all wheels are one interface with the springs of their vehicles
+            self._together = np.arange(len(fleet.coupled))
+            self._whole = convoy.fleet.compliance.toarray()
+        together = self._together
         apart = np.setdiff1d(np.arange(len(fleet.coupled)), together)
         owner = fleet.vehicle_of[apart]
         vehicles, count = np.unique(owner, return_counts=True)
@@ -137,13 +144,14 @@ class NonlinearCoupling:
         structure, fleet, into = convoy.structure, convoy.fleet, stretch.into
         known = convoy.known_load(stretch, k)
         structure.predict(None if external is None else convoy.vectors @ external, known)
-        self.field.predict(structure)
+        if fleet is not None:
+            fleet.predict()
+        self.field.predict(structure, fleet)
         nothing = np.zeros(0)
         if fleet is None:
             count = self._on_structure(stretch, k, nothing, nothing, nothing, nothing)
             self.iterations.append(count)
             return nothing, nothing, nothing
-        fleet.predict()
         free = stretch.gap[k] - fleet.at_wheels()
         if len(into):
             free[into] += structure.gather(stretch.flat[k], stretch.held[k], stretch.weights[k])
@@ -168,13 +176,13 @@ class NonlinearCoupling:
     ) -> int:
         """Solve for the wheels of vehicles on the structure and the springs that deviate; iterations."""
         field = self.field
-        contacts = stretch.systems[0].contacts if stretch.systems else np.empty(0, dtype=np.int64)
+        contacts = self._together
         if not len(contacts) and not field.busy:
             field.rest()
             return 0
-        S = stretch.systems[0].matrices[k] if len(contacts) else np.zeros((0, 0))
-        w, count = len(contacts), 0
-        field.meet(stretch.held[k], stretch.weights[k], np.searchsorted(contacts, stretch.into), w)
+        S, w, count = self._system(stretch, k), len(contacts), 0
+        into = np.searchsorted(contacts, stretch.into)
+        field.meet(stretch.held[k], stretch.weights[k], into, contacts)
         while True:
             system, given, inner = field.joined(S, free[contacts])
             start = np.concatenate([guess[contacts], inner])
@@ -184,6 +192,16 @@ class NonlinearCoupling:
                 break
         forces[contacts], approach[contacts] = solution.forces[:w], solution.coordinates[:w]
         return count
+
+    def _system(self, stretch: Stretch, k: int) -> FloatArray:
+        """Compliance (n_wheel, n_wheel) of the wheels that are solved for together."""
+        systems = stretch.systems
+        if self._whole is None:
+            return systems[0].matrices[k] if systems else np.zeros((0, 0))
+        whole = self._whole.copy()
+        if systems:
+            whole[np.ix_(systems[0].contacts, systems[0].contacts)] = systems[0].matrices[k]
+        return whole
 
     def _solved(
         self,
@@ -259,7 +277,7 @@ class NonlinearCoupling:
         given = self.balance.plan.fleet.weight.copy()
         given[x] = np.where(self.laws.constrained, 0.0, forces)
         total, excess = self.balance.accelerate(
-            rows, structure.state, fleet.state, time, self.touching, given, self.field.force()
+            rows, structure.state, fleet.state, time, self.touching, given, self.field.force(), fleet.inner
         )
         fleet.forces = total[x]
         load = np.asarray(rows.E.T @ total)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from axlespan.contact.laws import Law, law_of
@@ -9,6 +11,7 @@ from axlespan.contact.laws_of_wheels import WheelLaws
 from axlespan.errors import InputError
 from axlespan.interaction.crossing import Crossing
 from axlespan.interaction.settings import Settings
+from axlespan.model.system import SpringRows
 
 
 def laws_of(crossing: Crossing, settings: Settings) -> WheelLaws:
@@ -40,7 +43,7 @@ def laws_of(crossing: Crossing, settings: Settings) -> WheelLaws:
     return WheelLaws.of(laws, np.array(forces), radii)
 
 
-def require_direct(settings: Settings, laws: WheelLaws, n_law: int) -> None:
+def require_direct(settings: Settings, laws: WheelLaws, springs: Sequence[SpringRows]) -> None:
     """Laws other than the rigid one go with the direct method; those that let go, with the full basis.
 
     Raises
@@ -48,12 +51,13 @@ def require_direct(settings: Settings, laws: WheelLaws, n_law: int) -> None:
     InputError
         If another coupling or a reduced basis is asked for.
     """
-    what = "nonlinear springs" if n_law else f"contact: {next(k for k in laws.kinds if k != 'rigid')}"
+    kinds = [kind for kind in laws.kinds if kind != "rigid"]
+    what = f"contact: {kinds[0]}" if kinds and not springs else "nonlinear springs"
     if settings.coupling != "direct":
         raise InputError(
             f"does not know {what}", field="method", value=settings.coupling, fix="Use method: direct"
         )
-    if settings.basis != "full" and (n_law or laws.unilateral.any()):
+    if settings.basis != "full" and (springs or laws.unilateral.any()):
         raise InputError(
             f"does not know {what}", field="basis", value="reduced", fix="Use basis: full"
         )

@@ -1,9 +1,9 @@
 r"""The nonlinear springs of a structure as unknowns of a step: their deviations from the reference stiffness.
 
-A spring of the law f(e, ė) has the reference stiffness k in the matrices of the structure. Displacements count from
+A spring of the law f(e, ė) has the reference stiffness k and damping c in the matrices of the structure. Displacements count from
 the state under the structure's own weight, where its elongation is e_0, so that
 
-.. math:: q(e, \dot e) = f(e_0 + e, \dot e) - f(e_0, 0) - k e
+.. math:: q(e, \dot e) = f(e_0 + e, \dot e) - f(e_0, 0) - k e - c \dot e
 
 is what the matrices leave out. A ballast spring that stays in compression has q = 0, and only those with q ≠ 0 are
 unknowns of a step.
@@ -11,7 +11,7 @@ unknowns of a step.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -19,6 +19,7 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from axlespan.errors import InputError
+from axlespan.interaction.plan import Plan
 from axlespan.linalg.factor import Factor
 from axlespan.model.motions import Constant
 from axlespan.model.system import SpringRows, System
@@ -52,10 +53,7 @@ class Springs:
             If one stands on a support that moves.
         """
         groups = system.nonlinear
-        if groups:
-            stacked = sp.csr_array(sp.vstack([group.rows for group in groups]))
-        else:
-            stacked = sp.csr_array((0, system.size))
+        stacked = sp.csr_array(sp.vstack([sp.csr_array((0, system.size)), *(group.rows for group in groups)]))
         rows, ground = stacked[:, system.free], stacked[:, system.prescribed]
         moves = [not (isinstance(m, Constant) and m.amount == 0.0) for m in system.motions]
         if groups and np.any(abs(ground).sum(axis=0)[np.array(moves, dtype=bool)] > 0.0):
@@ -63,6 +61,43 @@ class Springs:
         base = np.concatenate([group.gap for group in groups]) if groups else np.zeros(0)
         state = [np.zeros((len(group.gap), group.law.n_state)) for group in groups]
         return cls(groups, sp.csr_array(rows), sp.csr_array(ground), base, state)
+
+    @classmethod
+    def of_fleet(cls, plan: Plan) -> Springs:
+        """Those of all vehicles; elongations count from the static position on level ground."""
+        groups: list[SpringRows] = []
+        size, begin, number = plan.fleet.matrices.size, 0, 0
+        for item in plan.crossing.placements:
+            number += 1
+            system = item.vehicle.system
+            if system is None:
+                continue
+            n_own = len(system.free)
+            for group in system.nonlinear:
+                own = sp.csr_array(group.rows[:, system.free])
+                n = own.shape[0]
+                wide = sp.csr_array(
+                    sp.hstack([sp.csr_array((n, begin)), own, sp.csr_array((n, size - begin - n_own))])
+                )
+                groups.append(replace(group, rows=wide, name=f"{number}.{group.name}"))
+            begin += n_own
+        rows = sp.csr_array(sp.vstack([sp.csr_array((0, size)), *(group.rows for group in groups)]))
+        base = np.concatenate([np.zeros(0), *(group.gap for group in groups)])
+        state = [np.zeros((len(group.gap), group.law.n_state)) for group in groups]
+        return cls(tuple(groups), rows, sp.csr_array((rows.shape[0], 0)), base, state)
+
+    def with_fleet(self, others: Springs) -> Springs:
+        """These springs and those of vehicles as one list, for what their laws say."""
+        groups = (*self.groups, *others.groups)
+        joined = Springs(
+            groups,
+            sp.csr_array(sp.block_diag([self.rows, others.rows], format="csr")),
+            self.ground,
+            np.concatenate([self.base, others.base]),
+            [*self.state, *others.state],
+        )
+        joined.held = np.concatenate([self.held, others.held])  # what they were before the start
+        return joined
 
     @property
     def n(self) -> int:
@@ -72,7 +107,13 @@ class Springs:
     @cached_property
     def stiffness(self) -> FloatArray:
         """Reference stiffness (n,) [N/m]."""
-        return np.concatenate([np.full(len(g.gap), g.law.stiffness) for g in self.groups] or [np.zeros(0)])
+        return np.concatenate([np.full(len(g.gap), g.stiffness) for g in self.groups] or [np.zeros(0)])
+
+    @cached_property
+    def damping(self) -> FloatArray:
+        """Reference damping (n,) [N s/m]."""
+        parts = [np.full(len(g.gap), g.damping) for g in self.groups]
+        return np.concatenate(parts or [np.zeros(0)])
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -103,9 +144,9 @@ class Springs:
     def deviation(self, e: FloatArray, rate: FloatArray) -> FloatArray:
         """Q (n,) [N]; exactly zero, without the rounding, where the law follows its reference."""
         result = self._forces(e, rate) - self.held
-        linear = self.stiffness * e
-        result -= linear
-        size = np.abs(linear) + np.abs(self.held)
+        linear, damped = self.stiffness * e, self.damping * rate
+        result -= linear + damped
+        size = np.abs(linear) + np.abs(damped) + np.abs(self.held)
         result[np.abs(result) <= 1e-14 * size] = 0.0
         return result
 
@@ -114,7 +155,7 @@ class Springs:
         k, c, total = np.empty(self.n), np.empty(self.n), self.base + e
         for group, state, at in zip(self.groups, self.state, self.slices, strict=True):
             k[at], c[at] = group.law.tangent(total[at], rate[at], state)
-        return k - self.stiffness, c
+        return k - self.stiffness, c - self.damping
 
     def static_deviation(self, e: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Q and its derivative at rest."""

@@ -57,6 +57,8 @@ def nonlinear_start(
     statics = _Statics(plan, laws, rows, factors, springs)
     u_x, deviation = statics.solve()
     forces, approach, elongation = statics.at(u_x, deviation)
+    if springs.n:
+        deviation, _ = springs.static_deviation(elongation)  # exactly zero where a law follows its reference
     structure, vehicles = State.at_rest((plan.structure.size,)), State.at_rest((fleet.matrices.size,))
     structure.u[:] = statics.deflection(forces, deviation)
     vehicles.u[:] = _vehicles(plan, u_x)
@@ -121,6 +123,16 @@ def _vehicles(plan: Plan, u_x: FloatArray) -> FloatArray:
         stiffness = sp.csr_array(fleet.matrices.K)
         u[rest] = factorize(sp.csr_array(stiffness[rest][:, rest])).solve(-(stiffness[rest] @ u))
     return u
+
+
+def _step(jacobian: FloatArray, residual: FloatArray) -> FloatArray:
+    """The Newton step; the smallest one where a vehicle may move freely for want of contacts."""
+    if not len(residual):
+        return residual
+    try:
+        return np.linalg.solve(jacobian, residual)
+    except np.linalg.LinAlgError:
+        return np.linalg.lstsq(jacobian, residual, rcond=1e-14)[0]
 
 
 class _Statics:
@@ -203,7 +215,7 @@ class _Statics:
         y = np.concatenate([self.free[:w] - self.Z[:w, :w] @ self.weight, np.zeros(self.springs.n)])
         residual, jacobian = self.residual(y)
         for _ in range(_LIMIT):
-            step = np.linalg.lstsq(jacobian, residual, rcond=1e-14)[0] if len(y) else y
+            step = _step(jacobian, residual)
             size = float(residual @ residual)
             share = 1.0
             for _ in range(_HALVINGS):

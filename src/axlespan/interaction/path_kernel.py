@@ -67,9 +67,7 @@ def compiled_sandwich() -> Loop | None:
     return compiled(sandwich)
 
 
-def sandwich(
-    Z: Any, offset: Any, low: Any, high: Any, local: Any, weights: Any, result: Any
-) -> None:
+def sandwich(Z: Any, offset: Any, low: Any, high: Any, local: Any, weights: Any, result: Any) -> None:
     """Fill in E Z Eᵀ (n_step, n_wheel, n_wheel), symmetric.
 
     Parameters
@@ -87,7 +85,11 @@ def sandwich(
     # What the wheels load: places and weights, filled up to fours with weights of zero, and the range of the places.
     fours = (n_local + 3) // 4
     place, weight = np.zeros((n_wheel, 4 * fours), np.int64), np.zeros((n_wheel, 4 * fours))
-    count, lowest, highest = np.zeros(n_wheel, np.int64), np.zeros(n_wheel, np.int64), np.zeros(n_wheel, np.int64)
+    count, lowest, highest = (
+        np.zeros(n_wheel, np.int64),
+        np.zeros(n_wheel, np.int64),
+        np.zeros(n_wheel, np.int64),
+    )
     for k in range(n_step):
         for i in range(n_wheel):
             m, lowest[i], highest[i] = 0, n_path, 0

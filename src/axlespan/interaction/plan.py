@@ -74,7 +74,9 @@ class Plan:
     @property
     def is_nonlinear(self) -> bool:
         """Whether contact may let go or give way, or the structure has nonlinear springs."""
-        return not self.laws.all_rigid or bool(self.crossing.structure.system.nonlinear)
+        systems = [self.crossing.structure.system]
+        systems += [item.vehicle.system for item in self.crossing.placements if item.vehicle.system is not None]
+        return not self.laws.all_rigid or any(system.nonlinear for system in systems)
 
     @property
     def times(self) -> FloatArray:
@@ -123,7 +125,7 @@ def plan_for(crossing: Crossing, settings: Settings) -> Plan:
         laws=laws_of(crossing, settings),
     )
     if plan.is_nonlinear:
-        require_direct(settings, plan.laws, len(system.nonlinear))
+        require_direct(settings, plan.laws, system.nonlinear)
     _check_time_step(plan)
     _check_reach(plan)
     notes = require_clear_tracks(crossing, settings.time_step * settings.steps)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -25,6 +26,9 @@ RIGID = Rigid()
 #: Time [s] after which a vehicle with all wheels in the air is lost, when none is given.
 LOST_AFTER = 0.5
 
+#: Environment variable with the number of threads, where a run does not name it.
+THREADS = "AXLESPAN_THREADS"
+
 #: Ways of coupling vehicle and structure.
 COUPLINGS = ("direct", "iterative", "refactored", "literal")
 
@@ -39,6 +43,10 @@ _WIDEST_SLEEPERS = 3.0
 
 #: Largest footprint [m] and its largest share of the running line, when none is given.
 FOOTPRINT, FOOTPRINT_SHARE = 1.2, 0.02
+
+#: Elements under a footprint where the line has kinks in slope between them, and its largest share of the line.
+KINKED_ELEMENTS, MOST_OF_LINE = 3, 0.1
+_SMOOTH = 4  # coefficients of a path that is smooth over its nodes: cubics of beams
 
 
 @dataclass(frozen=True)
@@ -86,6 +94,7 @@ class Settings:
     notes: Sequence[str] = ()  # what was chosen by default, and warnings
     contact: Law = RIGID  # of wheels that have no law of their own
     lost_after: float = LOST_AFTER  # time for which all wheels of a vehicle may be in the air [s]
+    threads: int = 1
 
     def under_wheels(self, path: PolynomialPath) -> PolynomialPath:
         """A line as wheels touch it: shared among sleepers, under a footprint."""
@@ -118,6 +127,7 @@ def settings_for(
     line_points: int | Sequence[float] | None = None,
     contact: str | Law = RIGID,
     lost_after: float = LOST_AFTER,
+    threads: int | None = None,
 ) -> Settings:
     """Check the settings of a run and fill in what the user left to us.
 
@@ -164,7 +174,21 @@ def settings_for(
         notes=tuple(notes),
         contact=law_of(contact),
         lost_after=require_positive(lost_after, "lost_after"),
+        threads=_threads(threads),
     )
+
+
+def _threads(given: int | None) -> int:
+    """The number of threads that is given, else that of the environment, else one."""
+    raw = os.environ.get(THREADS, "1") if given is None else given
+    try:
+        number = int(raw)
+    except ValueError:
+        number = 0
+    if isinstance(raw, bool) or number < 1 or (isinstance(raw, float) and raw != number):
+        field = THREADS if given is None else "threads"
+        raise InputError("must be a whole number of at least 1", field=field, value=raw)
+    return number
 
 
 def _check_basis(basis: str | ReducedBasis, tolerance: float | None, coupling: str) -> None:
@@ -226,6 +250,15 @@ def _sleepers(crossing: Crossing, spacing: float | None) -> float:
     return float(spacing)
 
 
+def _kinked_elements(crossing: Crossing) -> float:
+    """Usual length [m] of a line's elements where they meet with kinks in slope; zero on beams."""
+    paths = [crossing.structure.line(name) for name in dict.fromkeys(crossing.contact_lines)]
+    lengths = [
+        float(np.median(np.diff(path.breaks))) for path in paths if path.coefficients.shape[2] < _SMOOTH
+    ]
+    return max(lengths, default=0.0)
+
+
 def _footprint(crossing: Crossing, footprint: float | None, notes: list[str]) -> float:
     length = crossing.structure.length
     if footprint is not None:
@@ -246,6 +279,14 @@ def _footprint(crossing: Crossing, footprint: float | None, notes: list[str]) ->
         )
         return chosen
     chosen = min(FOOTPRINT, FOOTPRINT_SHARE * length)
+    kinked = _kinked_elements(crossing)
+    if kinked * KINKED_ELEMENTS > chosen:
+        chosen = min(kinked * KINKED_ELEMENTS, MOST_OF_LINE * length)
+        notes.append(
+            f"footprint of {chosen:.3g} m by default, {KINKED_ELEMENTS} elements of solids or shells: a wheel with mass "
+            "does not feel the kinks where they meet"
+        )
+        return chosen
     notes.append(
         f"footprint of {chosen:.3g} m by default, because wheels have mass: a kink in the line, as at the end of a bare span, "
         "does not act as a blow"

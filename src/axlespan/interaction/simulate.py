@@ -74,6 +74,7 @@ def simulate(
     line_points: int | Sequence[float] | None = None,
     contact: str | Law = RIGID,
     lost_after: float = LOST_AFTER,
+    threads: int | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Result:
     """Simulate a crossing.
@@ -130,6 +131,8 @@ def simulate(
         :func:`reduce_structure`). The result's facts hold its size and an estimate of its error.
     basis_tolerance : float, optional
         Estimated error [-] that a basis built here must reach; it grows until it does (four sizes at most).
+    threads : int, optional
+        Threads of solves by PARDISO; when left out, those of the environment's AXLESPAN_THREADS, else one.
     progress : callable, optional
         Called with the number of steps done, now and then.
 
@@ -166,6 +169,7 @@ def simulate(
         line_points=line_points,
         contact=contact,
         lost_after=lost_after,
+        threads=threads,
     )
     return run_plan(plan_for(crossing, settings), progress)
 
@@ -190,6 +194,7 @@ def simulate_many(
     line_points: int | Sequence[float] | None = None,
     contact: str | Law = RIGID,
     lost_after: float = LOST_AFTER,
+    threads: int | None = None,
 ) -> list[Result]:
     """Simulate several crossings of one structure side by side, from one factorization.
 
@@ -202,6 +207,8 @@ def simulate_many(
     time_step : float
         [s]; this and all that is not named here as for :func:`simulate`. The defaults of method and footprint
         follow from all trains together.
+    threads : int, optional
+        As for :func:`simulate`; with other solvers than PARDISO the crossings are shared among so many threads.
 
     Returns
     -------
@@ -246,6 +253,7 @@ def simulate_many(
             line_points=line_points,
             contact=contact,
             lost_after=lost_after,
+            threads=threads,
         )
 
     pairs = list(zip(crossings, counts, strict=True))
@@ -353,6 +361,8 @@ def prepare(plans: Sequence[Plan]) -> PreparedStructure:
         path_dofs,
         loaded=min(rows, len(path_dofs)),
         solver=settings.solver,
+        threads=settings.threads,
+        lanes=len(plans),
     )
 
 
@@ -425,4 +435,5 @@ def _facts(plan: Plan, prepared: PreparedStructure) -> dict[str, Any]:
         "solver": factor.name,
         "factor_bytes": int(factor.nbytes),
         "path_dofs": len(prepared.columns.path_dofs),
+        "threads": plan.settings.threads,
     }

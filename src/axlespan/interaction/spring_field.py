@@ -1,11 +1,12 @@
-r"""The nonlinear springs of a structure within a step: which are unknowns, and what they do to the structure.
+r"""Nonlinear springs within a step: which are unknowns, and what they do to the bodies.
 
 All elongations follow from the free response, the contact forces X of the wheels and the deviations q,
 
-.. math:: e = e^* - (1+α) β Δt^2 \left( B A^{-1} E^T X + B A^{-1} B^T q \right)
+.. math:: e = e^* - (1+α) β Δt^2 \left( B A^{-1} R^T X + B A^{-1} B^T q \right)
 
-with the rates ė = ė* + γ/(βΔt) (e - e*). Springs whose deviation vanishes are left out of Newton's method; after
-it has converged, those that were left out wrongly are taken in, and the step is solved again.
+with R = E on the structure and R = -I_X on the vehicles, and the rates ė = ė* + γ/(βΔt) (e - e*). Springs whose
+deviation vanishes are left out of Newton's method; after it has converged, those that were left out wrongly are
+taken in, and the step is solved again.
 """
 
 from __future__ import annotations
@@ -13,90 +14,109 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from axlespan.interaction.bodies import StructureBody
+from axlespan.interaction.bodies import FleetBody, StructureBody
 from axlespan.interaction.nonlinear_springs import Springs
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
+# Columns of springs that are solved for at a time.
+_BLOCK = 64
+
 
 class SpringField:
-    """The springs of one structure in time; ``springs`` have the memory of the last completed step.
+    """The springs of a structure and its vehicles in time, with the memory of the last completed step.
 
     Parameters
     ----------
-    springs : Springs
-        Under the structure's own weight.
-    deviation : array (n_spring,)
+    own : Springs
+        Of the structure, under its own weight.
+    deviation : array (n_own,)
         At time zero [N].
+    fleet : Springs
+        Of the vehicles.
     """
 
-    def __init__(self, springs: Springs, deviation: FloatArray) -> None:
-        self.springs = springs
-        self.q = deviation.copy()
-        self.e = np.zeros(springs.n)
-        self.rate = np.zeros(springs.n)
-        self.active = np.flatnonzero(deviation)
+    def __init__(self, own: Springs, deviation: FloatArray, fleet: Springs) -> None:
+        self.springs = own.with_fleet(fleet)
+        self.n, self.n_own, self.n_fleet = self.springs.n, own.n, fleet.n
+        self._rows, self._rows_fleet, self._ground = own.rows, fleet.rows, own.ground
+        self._dofs, self._dofs_fleet = np.unique(own.rows.indices), np.unique(fleet.rows.indices)
+        self._local, self._local_fleet = own.rows[:, self._dofs], fleet.rows[:, self._dofs_fleet]
+        self.q = np.concatenate([deviation, np.zeros(fleet.n)])
+        self.e, self.rate = np.zeros(self.n), np.zeros(self.n)
+        self.e_free, self.rate_free = np.zeros(self.n), np.zeros(self.n)
+        self.active = np.flatnonzero(self.q)
         self.largest = len(self.active)  # unknowns of a step, so far
         self.history = [self.q]  # of the start and each step, where springs stand on supports
-        self._dofs = np.unique(springs.rows.indices) if springs.n else np.empty(0, dtype=np.int64)
-        self._local = springs.rows[:, self._dofs]
         self._columns: FloatArray | None = None
-        self._on_ground = bool(springs.ground.nnz)
 
     # --- compliance ------------------------------------------------------------------------------
 
-    def enter(self, structure: StructureBody) -> None:
+    def enter(self, structure: StructureBody, fleet: FleetBody | None) -> None:
         """Have the columns of the springs and of the path d.o.f. at hand that a stretch needs."""
-        if not self.springs.n:
+        if not self.n:
             return
-        integrator = structure.integrator
-        scale = integrator.weight_c * integrator.u_from_a
         if self._columns is None:
-            n, rows = integrator.size, self.springs.rows
-            path = structure.columns.path_dofs
-            Z = np.empty((self.springs.n, self.springs.n))
-            on_path = np.empty((len(path), self.springs.n))
-            for begin in range(0, self.springs.n, 64):
-                some = slice(begin, min(begin + 64, self.springs.n))
-                block = integrator.factor.solve(np.ascontiguousarray(rows[some].T.toarray()))
-                Z[:, some], on_path[:, some] = rows @ block, block[path]
-            self._columns = 0.5 * scale * (Z + Z.T)
-            place = np.zeros(n, dtype=np.int64)
-            place[path] = np.arange(len(path))
-            self._place, self._all_path = place, scale * on_path
-        self._path = self._all_path[self._place[structure.columns.held]]  # (n_held, n_spring)
-        self._rate_from_e = integrator.v_from_a / integrator.u_from_a
+            self._columns = np.zeros((self.n, self.n))
+            self._solve_structure(structure)
+            self._solve_fleet(fleet)
+            self._rate_from_e = structure.integrator.v_from_a / structure.integrator.u_from_a
+        self._path = self._all_path[self._place[structure.columns.held]]  # (n_held, n_own)
+
+    def _solve_structure(self, structure: StructureBody) -> None:
+        assert self._columns is not None
+        integrator, path, n = structure.integrator, structure.columns.path_dofs, self.n_own
+        scale = integrator.weight_c * integrator.u_from_a
+        Z, on_path = np.empty((n, n)), np.empty((len(path), n))
+        for begin in range(0, n, _BLOCK):
+            some = slice(begin, min(begin + _BLOCK, n))
+            block = integrator.factor.solve(np.ascontiguousarray(self._rows[some].T.toarray()))
+            Z[:, some], on_path[:, some] = self._rows @ block, block[path]
+        self._columns[:n, :n] = 0.5 * scale * (Z + Z.T)
+        self._place = np.zeros(integrator.size, dtype=np.int64)
+        self._place[path] = np.arange(len(path))
+        self._all_path = scale * on_path
+
+    def _solve_fleet(self, fleet: FleetBody | None) -> None:
+        if fleet is None or not self.n_fleet:
+            return
+        assert self._columns is not None
+        scale = fleet.integrator.weight_c * fleet.integrator.u_from_a
+        solved = fleet.integrator.factor.solve(np.ascontiguousarray(self._rows_fleet.T.toarray()))
+        Z = np.asarray(self._rows_fleet @ solved)
+        self._columns[self.n_own :, self.n_own :] = 0.5 * scale * (Z + Z.T)
+        self._of_wheels = -scale * solved[fleet.fleet.dofs]  # (n_coupled, n_fleet)
+        self._fleet_responses = -fleet.integrator.weight_c * solved
 
     # --- a step ----------------------------------------------------------------------------------
 
-    def predict(self, structure: StructureBody) -> None:
+    def predict(self, structure: StructureBody, fleet: FleetBody | None) -> None:
         """Elongations and rates of the free response."""
-        if not self.springs.n:
+        if not self.n:
             return
-        stepper = structure.stepper
-        at = self._dofs
-        self.e_free = np.asarray(self._local @ stepper.displacement(at))
-        velocity = stepper.velocity(at)
-        self.rate_free = np.asarray(self._local @ velocity)
+        bodies = [(structure.stepper, self._dofs, self._local)]
+        if fleet is not None:
+            bodies.append((fleet.stepper, self._dofs_fleet, self._local_fleet))
+        self.e_free = np.concatenate([local @ body.displacement(at) for body, at, local in bodies])
+        self.rate_free = np.concatenate([local @ body.velocity(at) for body, at, local in bodies])
 
     @property
     def busy(self) -> bool:
         """Whether a spring deviates, or would in the free response."""
-        if not self.springs.n:
+        if not self.n:
             return False
         return bool(len(self.active)) or bool(np.any(self.springs.deviation(self.e_free, self.rate_free)))
 
     def rest(self) -> None:
         """A step in which no spring deviates and no wheel is there."""
-        if self.springs.n:
-            self.q, self.e, self.rate = np.zeros(self.springs.n), self.e_free, self.rate_free
+        self.q, self.e, self.rate = np.zeros(self.n), self.e_free, self.rate_free
 
-    def meet(self, held: IntArray, weights: FloatArray, at: IntArray, n_wheel: int) -> None:
+    def meet(self, held: IntArray, weights: FloatArray, at: IntArray, contacts: IntArray) -> None:
         """Note which d.o.f. the wheels on the structure load (n_wheel, n_local), and their places in the interface."""
-        if not self.springs.n or not len(self._path):  # no wheel is on the structure yet
-            at = at[:0]
-        self._held, self._weights, self._at, self._n_wheel = held, weights, at, n_wheel
+        if not self.n_own or not len(self._path):  # no wheel is on the structure yet
+            at, held, weights = at[:0], held[:0], weights[:0]
+        self._held, self._weights, self._at, self._contacts = held, weights, at, contacts
 
     def joined(self, S: FloatArray, gap: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Compliance, free coordinates and guessed deviations of the wheels and the active springs together."""
@@ -106,9 +126,16 @@ class SpringField:
         assert self._columns is not None
         system = np.zeros((w + len(a), w + len(a)))
         system[:w, :w] = S
-        if len(self._at):
-            cross = np.einsum("ij,ijk->ik", self._weights, self._path[self._held][:, :, a])
-            system[self._at, w:], system[w:, self._at] = cross, cross.T
+        own = a < self.n_own
+        if len(self._at) and own.any():
+            path = self._path[self._held[:, :, None], a[own]]
+            cross = np.einsum("ij,ijk->ik", self._weights, path)
+            columns = w + np.flatnonzero(own)
+            system[np.ix_(self._at, columns)], system[np.ix_(columns, self._at)] = cross, cross.T
+        if not own.all() and w:
+            cross = self._of_wheels[np.ix_(self._contacts, a[~own] - self.n_own)]
+            columns = w + np.flatnonzero(~own)
+            system[:w, columns], system[columns, :w] = cross, cross.T
         system[w:, w:] = self._columns[np.ix_(a, a)]
         return system, np.concatenate([gap, self.e_free[a]]), self.q[a]
 
@@ -123,18 +150,20 @@ class SpringField:
 
     def settle(self, forces: FloatArray, deviation: FloatArray) -> bool:
         """Take a solution; false where springs deviate that were left out: they are active from now on."""
-        if not self.springs.n:
+        if not self.n:
             return True
         assert self._columns is not None
-        q = np.zeros(self.springs.n)
+        q = np.zeros(self.n)
         q[self.active] = deviation
         e = self.e_free.copy()
         if len(self.active):
-            e -= self._columns[:, self.active] @ deviation
+            e -= deviation @ self._columns[self.active]
         if len(self._at):
             loads = (self._weights * forces[self._at][:, None]).ravel()
-            on_path = np.bincount(self._held.ravel(), loads, minlength=len(self._path))[: len(self._path)]
-            e -= on_path @ self._path
+            used, place = np.unique(self._held, return_inverse=True)
+            e[: self.n_own] -= np.bincount(place.ravel(), loads) @ self._path[used]
+        if self.n_fleet and len(forces):
+            e[self.n_own :] -= forces @ self._of_wheels[self._contacts]
         rate = self.rate_free + self._rate_from_e * (e - self.e_free)
         left_out = self.springs.deviation(e, rate) != 0.0
         left_out[self.active] = False
@@ -147,18 +176,17 @@ class SpringField:
 
     def take(self, structure: StructureBody, load: FloatArray | None, known: FloatArray | None) -> None:
         """Give the structure the loads of the wheels (n_held,) and the springs, and complete the step."""
-        springs = self.springs
-        if springs.n:
-            springs.advance(self.e, self.rate)
-            if self._on_ground:
-                self.history.append(self.q)
+        if self.n:
+            self.springs.advance(self.e, self.rate)
             self.active = np.flatnonzero(self.q)
-        if not springs.n or not len(self.active):
+            if self._ground.nnz:
+                self.history.append(self.q)
+        inner = self.q[: self.n_own]
+        if not np.any(inner):
             structure.take(load, known)
             return
         integrator = structure.integrator
-        inner = np.asarray(springs.rows.T @ self.q)
-        total = inner.copy()
+        total = np.asarray(self._rows.T @ inner)
         if load is not None:
             total[structure.columns.held] += load
         structure.stepper.add(integrator.factor.solve(-integrator.weight_c * total))
@@ -167,21 +195,32 @@ class SpringField:
         structure.stepper.finish()
         structure.carry(total)
 
+    def take_fleet(self, fleet: FleetBody, forces: FloatArray) -> None:
+        """Give the vehicles the contact forces (n_coupled,) and their springs, and complete the step."""
+        if self.n_fleet:
+            inner = self.q[self.n_own :]
+            fleet.stepper.add(self._fleet_responses @ inner)
+            fleet.inner = np.asarray(-(self._rows_fleet.T @ inner))
+        fleet.take(forces)
+
     def force(self) -> FloatArray | None:
         """Force (n,) of the deviations on the structure at the last completed step."""
-        if not self.springs.n or not len(self.active):
-            return None
-        return np.asarray(-(self.springs.rows.T @ self.q))
+        inner = self.q[: self.n_own]
+        return np.asarray(-(self._rows.T @ inner)) if np.any(inner) else None
+
+    def fleet_force(self) -> FloatArray | None:
+        """Force (n,) of the deviations on the vehicles at the last completed step; None where they have no springs."""
+        return np.asarray(-(self._rows_fleet.T @ self.q[self.n_own :])) if self.n_fleet else None
 
     def on_supports(self, n_step: int) -> FloatArray | None:
         """What the deviations add to the reactions in the last so many steps (n_step, n_prescribed)."""
-        if not self._on_ground:
+        if not self._ground.nnz:
             return None
         recent, self.history = np.array(self.history[:n_step]), self.history[n_step:]
-        return np.asarray(recent @ self.springs.ground)
+        return np.asarray(recent[:, : self.n_own] @ self._ground)
 
     def facts(self) -> dict[str, object]:
         """For the summary."""
-        if not self.springs.n:
+        if not self.n:
             return {}
-        return {"nonlinear_springs": self.springs.n, "nonlinear_springs_active": self.largest}
+        return {"nonlinear_springs": self.n, "nonlinear_springs_active": self.largest}

@@ -64,7 +64,8 @@ class StartFactors:
     @cached_property
     def stiffness(self) -> Factor:
         """Factor of K."""
-        return factorize(self._plan.structure.K, kind=self._plan.settings.solver)
+        settings = self._plan.settings
+        return factorize(self._plan.structure.K, kind=settings.solver, threads=settings.threads)
 
     @cached_property
     def mass(self) -> Factor:
@@ -255,7 +256,7 @@ def mass_factor(matrices: Matrices, plan: Plan) -> Factor:
         mass = mass + (_SUBSTITUTE * 0.25 * dt**2) * matrices.K
         if matrices.C is not None:
             mass = mass + (_SUBSTITUTE * 0.5 * dt) * matrices.C
-    return factorize(sp.csr_array(mass), kind=plan.settings.solver)
+    return factorize(sp.csr_array(mass), kind=plan.settings.solver, threads=plan.settings.threads)
 
 
 def where_mass(matrices: Matrices, force: FloatArray, also: IntArray | None = None) -> FloatArray:

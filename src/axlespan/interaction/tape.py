@@ -48,7 +48,9 @@ class Tape:
         self.watched, self._lanes = watched, lanes
         self._sizes = (n_vehicle_dof, n_contact)
         places = watched.dofs if watched.reading is None else np.arange(watched.reading.shape[1])
-        self._flat = (places * lanes + np.arange(lanes)[:, None]).ravel()  # what belongs to a lane in one piece
+        self._flat = (
+            places * lanes + np.arange(lanes)[:, None]
+        ).ravel()  # what belongs to a lane in one piece
         self._n_step = 0
 
     def start(self, n_step: int) -> None:

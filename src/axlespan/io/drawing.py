@@ -128,7 +128,7 @@ def _supports(structure: Structure) -> list[dict[str, Any]]:
         points = dict(zip(model.node_labels(), model.points.tolist(), strict=True))
     for full, name in zip(system.independent[system.prescribed], system.support_names, strict=True):
         node, _, component = system.dof_names[int(full)].rpartition(".")
-        entry = {"name": name.rpartition(".")[0], "components": [], "point": points.get(node)}
+        entry: dict[str, Any] = {"name": name.rpartition(".")[0], "components": [], "point": points.get(node)}
         found.setdefault(node, entry)["components"].append(component)
     return list(found.values())
 
@@ -157,7 +157,9 @@ def _arrays(model: Model, result: Result | None) -> Arrays:
     beams = np.concatenate(
         [*empty, *(np.asarray(p.nodes) for p in model.parts if isinstance(p, (BeamPart, BarPart)))]
     )
-    springs = np.concatenate([*empty, *(np.asarray(p.nodes) for p in model.parts if isinstance(p, SpringPart))])
+    springs = np.concatenate(
+        [*empty, *(np.asarray(p.nodes) for p in model.parts if isinstance(p, SpringPart))]
+    )
     faces, owners = surface(model)
     used = np.unique(np.concatenate([beams.ravel(), springs.ravel(), faces.ravel()]))
     place = np.full(len(model.points), -1, dtype=np.int64)
@@ -183,7 +185,10 @@ def _face_stress(model: Model, fields: FloatArray, owners: npt.NDArray[np.int64]
         mises = at["von_mises"][:, 0] if "von_mises" in at else np.full(len(thickness), np.nan)
         if "shell_force" in at:
             sides = [
-                _mises(at["shell_force"] / thickness[:, None] + sign * 6.0 * at["shell_moment"] / thickness[:, None] ** 2)
+                _mises(
+                    at["shell_force"] / thickness[:, None]
+                    + sign * 6.0 * at["shell_moment"] / thickness[:, None] ** 2
+                )
                 for sign in (1.0, -1.0)
             ]
             mises = np.where(np.isfinite(mises), mises, np.maximum(*sides))

@@ -35,6 +35,7 @@ _EPISODES, _PARTS = 20, 60
 _COMPUTATION = {
     "coupling": "coupling",
     "solver": "solver",
+    "threads": "threads",
     "structure_dofs": "structure_dofs",
     "vehicle_dofs": "vehicle_dofs",
     "path_dofs": "path_dofs",

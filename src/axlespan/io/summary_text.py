@@ -293,9 +293,11 @@ def _time(run: Mapping[str, Any]) -> str:
 
 def _computed(computation: Mapping[str, Any]) -> str:
     wall, rate = computation.get("wall_time_s"), computation.get("steps_per_s")
+    threads = computation.get("threads")
     parts = [
         _with(computation.get("coupling"), "{} method"),
         _with(computation.get("solver"), "{} factorization"),
+        _with(threads if threads and threads > 1 else None, "{} threads"),
         _with(computation.get("iterations"), "{} iterations"),
         _with(computation.get("factorizations"), "{} factorizations"),
         _with(wall, "{:.3g} s"),

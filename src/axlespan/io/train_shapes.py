@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -42,7 +43,9 @@ class Unit:
     name: str
     front: float  # behind the head of the train [m]; negative is before its first wheel
     rear: float
-    wheels: tuple[tuple[int, float, str, str], ...]  # contact, behind the head [m], name of its d.o.f. (or empty), line
+    wheels: tuple[
+        tuple[int, float, str, str], ...
+    ]  # contact, behind the head [m], name of its d.o.f. (or empty), line
     boxes: tuple[Box, ...]
     static: tuple[float, ...] = ()  # [N] of each wheel
 
@@ -58,7 +61,11 @@ def units_of(content: Mapping[str, Any]) -> list[Unit]:
 
 
 def train_of(
-    train: int, placed: Sequence[tuple[Mapping[str, Any], float]], first: int, contact: int, lines: Sequence[str]
+    train: int,
+    placed: Sequence[tuple[Mapping[str, Any], float]],
+    first: int,
+    contact: int,
+    lines: Sequence[str],
 ) -> list[Unit]:
     """The vehicles of one train; ``first`` vehicles and ``contact`` wheels come before it."""
     found, own = [], 0
@@ -100,11 +107,18 @@ def _unit(
         for i, (wheel, place, line) in enumerate(zip(kind["wheels"], places, lines, strict=True))
     )
     boxes = _boxes(kind.get("bodies") or {}, number, behind, sorted(set(places)), front, rear)
-    return Unit(number, train, str(kind["name"]), front, rear, wheels, boxes, tuple(kind.get("static_N") or ()))
+    return Unit(
+        number, train, str(kind["name"]), front, rear, wheels, boxes, tuple(kind.get("static_N") or ())
+    )
 
 
 def _boxes(
-    bodies: Mapping[str, float], number: int, behind: float, places: Sequence[float], front: float, rear: float
+    bodies: Mapping[str, float],
+    number: int,
+    behind: float,
+    places: Sequence[float],
+    front: float,
+    rear: float,
 ) -> tuple[Box, ...]:
     low = {name: place for name, place in bodies.items() if LOW.search(name)}
     high = {name: place for name, place in bodies.items() if name not in low}
@@ -114,7 +128,7 @@ def _boxes(
         length = (max(own) - min(own) if len(own) > 1 else 1.2) + 0.9
         boxes.append(Box(f"{number}.{name}", behind + place, length, *_BOGIE, True))
     centers = sorted(high.items(), key=lambda item: item[1])
-    cuts = [front, *(behind + 0.5 * (a[1] + b[1]) for a, b in zip(centers, centers[1:], strict=False)), rear]
+    cuts = [front, *(behind + 0.5 * (a[1] + b[1]) for a, b in itertools.pairwise(centers)), rear]
     bottom, top = _SMALL if len(places) == 1 else _BODY
     for (name, _), begin, end in zip(centers, cuts, cuts[1:], strict=False):
         length = max(end - begin - _GAP, 0.4)

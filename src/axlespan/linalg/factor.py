@@ -31,6 +31,10 @@ _SOLVE_TIME = {
     "cholmod": (150.0, 2.0),
     "superlu": (50.0, 2.4),
 }
+# The same for each of many right-hand sides side by side; a kind that is not named gains nothing. PARDISO on the
+# solid model: 24 ms for one, 5.5 ms each for 8, 2.9 ms each for 32; a band: 16, 16 and 8 ms.
+_SOLVE_TIME_OF_MANY = {"banded": (1.0, 0.5), "pardiso": (30.0, 0.25)}
+_MANY = 8
 _SLOW_FACTORIZATION = {"superlu": 1.3}  # SuperLU takes five to twenty times the others' time to factorize
 _BAND_OUT_OF_CACHE = 16e6  # [byte]; a wider band is read from memory
 _TIME_OUT_OF_CACHE = 1.15  # [ns] per entry
@@ -67,17 +71,18 @@ def available() -> tuple[str, ...]:
     return (*(kind for kind, installed in optional if installed()), "superlu", "banded")
 
 
-def choose(matrix: MatrixLike) -> Choice:
+def choose(matrix: MatrixLike, *, columns: int = 1) -> Choice:
     """Return the kind of factor whose solves should be quickest, with the reason.
 
     The cost of a band is known once its half-bandwidth is: n (kd + 1) entries. The fill of a sparse factor is
-    estimated, within a factor of two. The choice is for one right-hand side at a time, as in an integration;
-    for many at once PARDISO gains more than a wide band does (64 on a solid model: 2.7 against 5.2 ms each).
+    estimated, within a factor of two. Of many right-hand sides at once PARDISO gains more than a wide band does.
 
     Parameters
     ----------
     matrix : sparse array or ndarray, shape (n, n)
         Symmetric matrix.
+    columns : int, optional
+        Right-hand sides that are solved for at a time.
 
     Examples
     --------
@@ -88,18 +93,19 @@ def choose(matrix: MatrixLike) -> Choice:
     ('banded', 'narrow band: half-bandwidth 1 of 500 equations')
     """
     csr = symmetric_csr(matrix)
-    return _choose(csr, BandOrder.of(csr))
+    return _choose(csr, BandOrder.of(csr), columns)
 
 
-def _choose(csr: CsrMatrix, order: BandOrder) -> Choice:
+def _choose(csr: CsrMatrix, order: BandOrder, columns: int) -> Choice:
+    times = _SOLVE_TIME | (_SOLVE_TIME_OF_MANY if columns >= _MANY else {})
     n, half_bandwidth = csr.shape[0], order.half_bandwidth
     sparse = available()[0]  # the best one of those that are there
     fill = min(estimated_fill(csr) / n, half_bandwidth + 1)
-    per_equation, per_entry = _SOLVE_TIME[sparse]
+    per_equation, per_entry = times[sparse]
     sparse_time = _SLOW_FACTORIZATION.get(sparse, 1.0) * (per_equation + per_entry * fill)
-    per_equation, per_entry = _SOLVE_TIME["banded"]
+    per_equation, per_entry = times["banded"]
     band_bytes = 8.0 * n * (half_bandwidth + 1)
-    if band_bytes > _BAND_OUT_OF_CACHE:
+    if band_bytes > _BAND_OUT_OF_CACHE and columns < _MANY:
         per_entry = _TIME_OUT_OF_CACHE
     if per_equation + per_entry * (half_bandwidth + 1) <= sparse_time and band_bytes <= _LARGEST_BAND:
         return Choice("banded", f"narrow band: half-bandwidth {half_bandwidth} of {n} equations")
@@ -111,7 +117,7 @@ def _choose(csr: CsrMatrix, order: BandOrder) -> Choice:
     return Choice(sparse, f"wide band: half-bandwidth {half_bandwidth} of {n} equations; {why}")
 
 
-def factorize(matrix: MatrixLike, *, kind: str = "auto", threads: int = 1) -> Factor:
+def factorize(matrix: MatrixLike, *, kind: str = "auto", threads: int = 1, columns: int = 1) -> Factor:
     """Factorize a symmetric positive definite matrix: A = L D Lᵀ.
 
     Parameters
@@ -122,6 +128,8 @@ def factorize(matrix: MatrixLike, *, kind: str = "auto", threads: int = 1) -> Fa
         ``"auto"`` (see :func:`choose`) or one of :func:`available`.
     threads : int, optional
         Threads for PARDISO; the others do not use it.
+    columns : int, optional
+        Right-hand sides that will be solved for at a time, for the choice of a kind.
 
     Returns
     -------
@@ -148,7 +156,7 @@ def factorize(matrix: MatrixLike, *, kind: str = "auto", threads: int = 1) -> Fa
     order = BandOrder.of(csr) if kind in ("auto", "banded") else None
     if kind == "auto":
         assert order is not None
-        kind = _choose(csr, order)
+        kind = _choose(csr, order, columns)
     builders: dict[str, Callable[[CsrMatrix], Factor]] = {
         "banded": lambda a: BandedFactor(a, order),
         "pardiso": lambda a: PardisoFactor(a, threads),

@@ -97,7 +97,9 @@ def _nonlinear(model: Model, table: DofTable, elimination: sp.csr_array) -> tupl
         n_spring = len(dofs)
         row = np.repeat(np.arange(n_spring), 2)
         unit = sp.coo_array((np.tile([-1.0, 1.0], n_spring), (row, dofs.ravel())), (n_spring, table.size))
-        found.append(SpringRows(part.name, part.law, sp.csr_array(sp.csr_array(unit) @ elimination), part.gap))
+        rows = sp.csr_array(sp.csr_array(unit) @ elimination)
+        law = part.law
+        found.append(SpringRows(part.name, law, rows, part.gap, law.stiffness, law.reference_damping))
     return tuple(found)
 
 

@@ -32,6 +32,11 @@ class SpringLaw(Protocol):
         ...
 
     @property
+    def reference_damping(self) -> float:
+        """Dashpot [N s/m] that stands in the damping matrix, not negative."""
+        ...
+
+    @property
     def n_state(self) -> int:
         """Numbers that each spring remembers."""
         ...
@@ -59,6 +64,7 @@ class Stateless:
     """What laws without memory share."""
 
     n_state = 0
+    reference_damping = 0.0
 
     def advanced(self, e: FloatArray, rate: FloatArray, state: FloatArray) -> FloatArray:
         """Nothing is remembered."""
@@ -75,23 +81,35 @@ class UnilateralSpring(Stateless):
         In compression [N/m].
     damping : float
         Of a dashpot beside it, while it touches [N s/m]; the two together never pull.
+    touch : float
+        Compression [m] over which the dashpot comes in: without that its force would jump at a touch.
     """
 
     stiffness: float
     damping: float = 0.0
+    touch: float = 1e-6
 
     def __post_init__(self) -> None:
         require_positive(self.stiffness, "stiffness")
         require_positive(self.damping, "damping", zero=True)
+        require_positive(self.touch, "touch")
+
+    @property
+    def reference_damping(self) -> float:  # type: ignore[override]
+        """That of the spring in compression [N s/m]."""
+        return self.damping
 
     def force(self, e: FloatArray, rate: FloatArray, state: FloatArray) -> FloatArray:
-        """min(k e + c ė, 0) while e < 0."""
-        return np.minimum(self.stiffness * e + self.damping * rate, 0.0) * (e < 0.0)
+        """min(k e + c w ė, 0), with w from 0 to 1 over the touch."""
+        share = np.clip(-e / self.touch, 0.0, 1.0)
+        return np.asarray(np.minimum(self.stiffness * np.minimum(e, 0.0) + self.damping * share * rate, 0.0))
 
     def tangent(self, e: FloatArray, rate: FloatArray, state: FloatArray) -> tuple[FloatArray, FloatArray]:
         """K and c while it pushes."""
-        pushes = ((e < 0.0) & (self.stiffness * e + self.damping * rate < 0.0)).astype(float)
-        return self.stiffness * pushes, self.damping * pushes
+        share = np.clip(-e / self.touch, 0.0, 1.0)
+        pushes = (e < 0.0) & (self.stiffness * e + self.damping * share * rate < 0.0)
+        coming = np.where(share < 1.0, -self.damping * rate / self.touch, 0.0)
+        return (self.stiffness + coming) * pushes, self.damping * share * pushes
 
     def energy(self, e: FloatArray, state: FloatArray) -> FloatArray:
         """½ k e² in compression."""
@@ -263,6 +281,7 @@ class BilinearHysteresis:
     hardening: float = 0.0
 
     n_state = 1  # plastic elongation [m]
+    reference_damping = 0.0
 
     def __post_init__(self) -> None:
         require_positive(self.stiffness, "stiffness")
@@ -352,6 +371,10 @@ class NonlinearPart:
     components: tuple[str, ...]  # one
 
     def matrices(self, points: FloatArray) -> ElementMatrices:
-        """The reference stiffness."""
-        unit = self.law.stiffness * np.array([[1.0, -1.0], [-1.0, 1.0]])
-        return ElementMatrices(np.broadcast_to(unit, (len(self.nodes), 2, 2)).copy())
+        """The reference stiffness and damping."""
+        pair, shape = np.array([[1.0, -1.0], [-1.0, 1.0]]), (len(self.nodes), 2, 2)
+        damping = self.law.reference_damping
+        return ElementMatrices(
+            stiffness=np.broadcast_to(self.law.stiffness * pair, shape).copy(),
+            damping=np.broadcast_to(damping * pair, shape).copy() if damping else None,
+        )

@@ -35,12 +35,14 @@ class Load:
 
 @dataclass(frozen=True, eq=False)
 class SpringRows:
-    """Nonlinear springs of one law; their reference stiffness is in the stiffness matrix of the system."""
+    """Nonlinear springs of one law; their reference stiffness and damping are in the matrices of the system."""
 
     name: str
     law: SpringLaw
     rows: sp.csr_array  # (n_spring, n): elongations e = rows @ u [m]
     gap: FloatArray  # (n_spring,) added to the elongations [m]
+    stiffness: float = 0.0  # reference, in the matrices [N/m]
+    damping: float = 0.0  # [N s/m]
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""Figures: functions of results that return matplotlib axes or figures.
+"""Figures: one function per figure, a function of results that draws into matplotlib axes and returns them.
 
 matplotlib is imported here and nowhere else, so that computing does not wait for it.
 """
@@ -6,19 +6,42 @@ matplotlib is imported here and nowhere else, so that computing does not wait fo
 from axlespan.plot.animation import animation
 from axlespan.plot.comparison import comparison
 from axlespan.plot.contact import contact_force
+from axlespan.plot.elevation import elevation
 from axlespan.plot.histories import acceleration, displacement, velocity
+from axlespan.plot.line_maps import line_map
+from axlespan.plot.modes import line_shapes, space_shape
+from axlespan.plot.profiles import irregularity, power_spectrum
 from axlespan.plot.reactions import reactions
+from axlespan.plot.sections import envelope, section_force
+from axlespan.plot.spectra import spectrum
 from axlespan.plot.standard import draw_figures, save, standard_figures
+from axlespan.plot.study import converging, draw_study, exceedance, over_speed, study_figures
+from axlespan.plot.verdict_bars import verdict_bars
 
 __all__ = [
     "acceleration",
     "animation",
     "comparison",
     "contact_force",
+    "converging",
     "displacement",
     "draw_figures",
+    "draw_study",
+    "elevation",
+    "envelope",
+    "exceedance",
+    "irregularity",
+    "line_map",
+    "line_shapes",
+    "over_speed",
+    "power_spectrum",
     "reactions",
     "save",
+    "section_force",
+    "space_shape",
+    "spectrum",
     "standard_figures",
+    "study_figures",
     "velocity",
+    "verdict_bars",
 ]

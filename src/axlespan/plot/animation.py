@@ -34,7 +34,10 @@ FORMATS = {".gif": "Pillow", ".mp4": "ffmpeg"}
 
 _DECK, _BODY, _BOGIE = "#8E9AA6", "#3F6FA3", "#56636F"
 _MARGIN = 0.2  # of the structure's length, before and after it
-_SHARE, _HIGHEST = 0.04, 1.3  # what the largest deflection [of the length] and motion of a vehicle [m] are drawn as
+_SHARE, _HIGHEST = (
+    0.04,
+    1.3,
+)  # what the largest deflection [of the length] and motion of a vehicle [m] are drawn as
 
 
 def animation(
@@ -131,7 +134,9 @@ class _Film:
         self._result, self._units = result, units_of(content)
         self._ways = [int(train["direction"]) for train in content["trains"]]
         self._ends = float(rows[0][0]), float(rows[-1][0])
-        self._supports = sorted({float(s["point"][0]) for s in content["supports"] if s["point"] and "z" in s["components"]})
+        self._supports = sorted(
+            {float(s["point"][0]) for s in content["supports"] if s["point"] and "z" in s["components"]}
+        )
         length = self._ends[1] - self._ends[0]
         self._window = window or (self._ends[0] - _MARGIN * length, self._ends[1] + _MARGIN * length)
         self._factor = _factor(result, length) if exaggeration is None else exaggeration
@@ -177,14 +182,18 @@ class _Film:
         row = int(np.clip(np.searchsorted(self._result.time, time), 1, len(self._result.time) - 1))
         begin, end = self._result.time[row - 1], self._result.time[row]
         share = (time - begin) / (end - begin)
-        now = (1.0 - share) * self._result.line_displacement[row - 1] + share * self._result.line_displacement[row]
+        now = (1.0 - share) * self._result.line_displacement[
+            row - 1
+        ] + share * self._result.line_displacement[row]
         return np.asarray(np.interp(positions, known, now, left=0.0, right=0.0))
 
     def _structure(self, time: float) -> Iterator[Artist]:
         s = np.linspace(*self._ends, 200)
         top = self._factor * self._deflection(s, time)
         outline = np.concatenate([np.column_stack([s, top]), np.column_stack([s, top - self._depth])[::-1]])
-        yield self._ax.add_patch(Polygon(outline, closed=True, facecolor=_DECK, edgecolor="black", linewidth=0.8))
+        yield self._ax.add_patch(
+            Polygon(outline, closed=True, facecolor=_DECK, edgecolor="black", linewidth=0.8)
+        )
         places = np.array([x for x in self._supports if self._ends[0] - 1e-6 <= x <= self._ends[1] + 1e-6])
         if len(places):
             under = self._factor * self._deflection(places, time) - self._depth
@@ -197,7 +206,9 @@ class _Film:
         ends = sorted((head - way * unit.front, head - way * unit.rear))
         if ends[1] < self._window[0] or ends[0] > self._window[1]:
             return []
-        found: list[Artist] = [self._body(box, head, way, time) for box in sorted(unit.boxes, key=lambda b: b.low)]
+        found: list[Artist] = [
+            self._body(box, head, way, time) for box in sorted(unit.boxes, key=lambda b: b.low)
+        ]
         for contact, behind, dof, _ in unit.wheels:
             found += self._wheel(contact, head - way * behind, dof, bool(unit.boxes), time)
         return found
@@ -220,24 +231,36 @@ class _Film:
         return self._ax.add_patch(patch)
 
     def _wheel(self, contact: int, x: float, dof: str, carried: bool, time: float) -> Sequence[Artist]:
-        moved = self._motion(dof, time) if dof in self._result.vehicle_dof else float(self._deflection(np.array([x]), time)[0])
+        moved = (
+            self._motion(dof, time)
+            if dof in self._result.vehicle_dof
+            else float(self._deflection(np.array([x]), time)[0])
+        )
         z = self._factor * moved
         if not carried:
             style: dict[str, Any] = {"arrowstyle": "-|>", "color": "#D55E00", "linewidth": 1.6}
             return [self._ax.annotate("", (x, z), (x, z + 2.4), arrowprops=style)]
         static = self._static[contact]
         ratio = self._at(self._result.contact_force, contact, time) / static if static else 1.0
-        patch = Circle((x, z + WHEEL_RADIUS), WHEEL_RADIUS, facecolor=self._color(0.5 * ratio), edgecolor="black", linewidth=0.8)
+        patch = Circle(
+            (x, z + WHEEL_RADIUS),
+            WHEEL_RADIUS,
+            facecolor=self._color(0.5 * ratio),
+            edgecolor="black",
+            linewidth=0.8,
+        )
         return [self._ax.add_patch(patch)]
 
 
 def _factor(result: Result, length: float) -> float:
     """A round factor that shows deflections well, and lets no vehicle fly."""
-    vertical = [i for i, name in enumerate(result.vehicle_dof) if name.endswith(".z") and not is_rotation(name)]
+    vertical = [
+        i for i, name in enumerate(result.vehicle_dof) if name.endswith(".z") and not is_rotation(name)
+    ]
     largest = float(np.abs(result.line_displacement).max(initial=0.0))
     moved = float(np.abs(result.vehicle_displacement[:, vertical]).max(initial=0.0))
     bounds = [share / size for share, size in ((_SHARE * length, largest), (_HIGHEST, moved)) if size > 0.0]
     if not bounds:
         return 1.0
     power = 10.0 ** np.floor(np.log10(min(bounds)))
-    return float(max(1.0, max(step * power for step in (1.0, 2.0, 5.0) if step * power <= min(bounds))))
+    return float(max(1.0, *(step * power for step in (1.0, 2.0, 5.0) if step * power <= min(bounds))))

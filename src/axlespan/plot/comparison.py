@@ -9,8 +9,8 @@ import numpy.typing as npt
 from matplotlib.axes import Axes
 
 from axlespan.errors import InputError
-from axlespan.plot.style import COLORS, axes_or_new, finish
 from axlespan.io.thinning import thinned
+from axlespan.plot.style import COLORS, axes_or_new, finish
 
 _DASHES = ("-", (0, (5, 2)), (0, (1, 1.2)), (0, (7, 2, 1, 2)), (0, (3, 1.5)), (0, (9, 2)))
 

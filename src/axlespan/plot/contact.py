@@ -11,9 +11,9 @@ from matplotlib.axes import Axes
 from axlespan.errors import InputError
 from axlespan.interaction.result import Result
 from axlespan.io.peaks import static_forces
+from axlespan.io.thinning import band_over, thinned
 from axlespan.plot.curves import FEW, draw, shown
 from axlespan.plot.style import BAND, COLORS, GUIDE, axes_or_new, finish
-from axlespan.io.thinning import band_over, thinned
 
 FloatArray = npt.NDArray[np.float64]
 

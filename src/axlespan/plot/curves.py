@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
 
-from axlespan.plot.style import BAND, COLORS
 from axlespan.io.thinning import band, thinned
+from axlespan.plot.style import BAND, COLORS
 
 FloatArray = npt.NDArray[np.float64]
 

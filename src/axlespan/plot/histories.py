@@ -58,7 +58,23 @@ def velocity(
     window: tuple[float, float] | None = None,
     ax: Axes | None = None,
 ) -> Axes:
-    """Draw velocities [mm/s] or [mrad/s] over time; see :func:`displacement`."""
+    """Draw velocities [mm/s] or [mrad/s] over time.
+
+    Parameters
+    ----------
+    result : Result
+    names : str or sequence of str, optional
+        Sensors or vehicle d.o.f.; all sensors when left out. More than six become a band.
+    window : (float, float), optional
+        Times shown [s].
+    ax : Axes, optional
+        Drawn into; a new pyplot figure when left out.
+
+    Raises
+    ------
+    InputError
+        If a name is unknown, or displacements and rotations are mixed.
+    """
     return _motion(result, "velocity", names, window, ax)
 
 
@@ -69,7 +85,23 @@ def acceleration(
     window: tuple[float, float] | None = None,
     ax: Axes | None = None,
 ) -> Axes:
-    """Draw accelerations [m/s²] or [rad/s²] over time; see :func:`displacement`."""
+    """Draw accelerations [m/s²] or [rad/s²] over time.
+
+    Parameters
+    ----------
+    result : Result
+    names : str or sequence of str, optional
+        Sensors or vehicle d.o.f.; all sensors when left out. More than six become a band.
+    window : (float, float), optional
+        Times shown [s].
+    ax : Axes, optional
+        Drawn into; a new pyplot figure when left out.
+
+    Raises
+    ------
+    InputError
+        If a name is unknown, or displacements and rotations are mixed.
+    """
     return _motion(result, "acceleration", names, window, ax)
 
 
@@ -80,19 +112,12 @@ def _motion(
     window: tuple[float, float] | None,
     ax: Axes | None,
 ) -> Axes:
-    chosen = _chosen(result, names)
-    turning = {is_rotation(name) for name in chosen if name not in result.sensor}
-    turning |= {False} if any(name in result.sensor for name in chosen) else set()
-    if len(turning) > 1:
-        fix = "Draw them into axes of their own"
-        raise InputError("must not mix displacements and rotations", field="names", value=chosen, fix=fix)
-    scale, unit = _SHOWN[quantity][turning.pop()]
-    table = np.column_stack([_history(result, quantity, name) for name in chosen])
+    chosen, table, unit = history_table(result, quantity, names)
     rows = inside(result.time, window)
     axes = axes_or_new(ax)
     sensors = sum(name in result.sensor for name in chosen)
     what = {len(chosen): "sensors", 0: "vehicle d.o.f."}.get(sensors, "curves")
-    draw(axes, result.time[rows], scale * table[rows], chosen, what, ends=sensors == 0)
+    draw(axes, result.time[rows], table[rows], chosen, what, ends=sensors == 0)
     return finish(axes, "Time [s]", f"{quantity.capitalize()} [{unit}]", window)
 
 
@@ -110,6 +135,39 @@ def inside(time: FloatArray, window: tuple[float, float] | None) -> slice:
     if last <= first:
         raise InputError("must hold a time of the result", field="window", value=window)
     return slice(max(int(first) - 1, 0), int(last) + 1)
+
+
+def history_table(
+    result: Result, quantity: str, names: str | Sequence[str] | None
+) -> tuple[list[str], FloatArray, str]:
+    """Names, histories (n_time, n_name) in the unit of figures, and that unit.
+
+    Parameters
+    ----------
+    quantity : {"displacement", "velocity", "acceleration", "contact_force"}
+
+    Raises
+    ------
+    InputError
+        If the quantity or a name is unknown, or displacements and rotations are mixed.
+    """
+    if quantity == "contact_force":
+        contacts = [names] if isinstance(names, str) else list(result.contact if names is None else names)
+        if not contacts:
+            raise InputError("has no contact", field="result")
+        table = [result.at("contact_force", name) for name in contacts]
+        return contacts, 1e-3 * np.column_stack(table), "kN"
+    if quantity not in _SHOWN:
+        known = ", ".join((*_SHOWN, "contact_force"))
+        raise InputError(f"must be one of {known}", field="quantity", value=quantity)
+    chosen = _chosen(result, names)
+    turning = {is_rotation(name) for name in chosen if name not in result.sensor}
+    turning |= {False} if any(name in result.sensor for name in chosen) else set()
+    if len(turning) > 1:
+        fix = "Draw them into axes of their own"
+        raise InputError("must not mix displacements and rotations", field="names", value=chosen, fix=fix)
+    scale, unit = _SHOWN[quantity][turning.pop()]
+    return chosen, scale * np.column_stack([_history(result, quantity, name) for name in chosen]), unit
 
 
 def _chosen(result: Result, names: str | Sequence[str] | None) -> list[str]:

@@ -10,10 +10,10 @@ from matplotlib.axes import Axes
 from axlespan.errors import InputError
 from axlespan.interaction.result import Result
 from axlespan.io.dof_units import is_rotation
+from axlespan.io.thinning import thinned
 from axlespan.plot.curves import FEW
 from axlespan.plot.histories import inside
 from axlespan.plot.style import COLORS, axes_or_new, finish
-from axlespan.io.thinning import thinned
 
 # A reaction so much smaller than the largest is none.
 _NOTHING = 1e-9

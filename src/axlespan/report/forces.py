@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from axlespan.io.thinning import band_over
 from axlespan.report.pack import Pack
 from axlespan.report.stored import Stored
 from axlespan.report.thinning import chosen_columns, rows_for
 
+FloatArray = npt.NDArray[np.float64]
+
 _MOST, _AT_FIRST = 12, 4
 _MARGIN = 0.25  # of the structure's length, shown before and after it
 
 
-def forces_over_position(stored: Stored, pack: Pack, ends: tuple[float, float] | None) -> dict[str, Any] | None:
+def forces_over_position(
+    stored: Stored, pack: Pack, ends: tuple[float, float] | None
+) -> dict[str, Any] | None:
     """The plot of contact forces over positions; None where wheels stand or nothing is known."""
     if not (stored.has("contact_force") and stored.has("contact_position")):
         return None
@@ -24,10 +30,11 @@ def forces_over_position(stored: Stored, pack: Pack, ends: tuple[float, float] |
     if not np.any(last != first):
         return None
     window = _window(ends, float(first.min()), float(last.max()))
-    static = [float((stored.content("checks").get("static_contact_force") or {}).get(name) or 0.0) for name in names]
-    sizes = []
-    for i in range(len(names)):
-        sizes.append(float(np.nanmax(np.abs(stored.column("contact_force", i) - static[i]), initial=0.0)))
+    static = [
+        float((stored.content("checks").get("static_contact_force") or {}).get(name) or 0.0) for name in names
+    ]
+    changes = (stored.column("contact_force", i) - static[i] for i in range(len(names)))
+    sizes = [float(np.nanmax(np.abs(change), initial=0.0)) for change in changes]
     kept = chosen_columns(sizes, _MOST)
     shown = set(chosen_columns([sizes[i] for i in kept], _AT_FIRST))
     series = []
@@ -37,13 +44,18 @@ def forces_over_position(stored: Stored, pack: Pack, ends: tuple[float, float] |
         if np.count_nonzero(inside) < 2:
             continue
         x, force = x[inside], 1e-3 * force[inside]
-        rows = rows_for(len(x), [0] * 4, lambda _, values=force: values)  # a quarter of a full plot each
+        rows = rows_for(len(x), [0] * 4, partial(_same, force))  # a quarter of a full plot each
         series.append(
-            {"name": f"wheel {names[i]}", "x": pack.add(x[rows], "f8"), "a": pack.add(force[rows]), "on": place in shown}
+            {
+                "name": f"wheel {names[i]}",
+                "x": pack.add(x[rows], "f8"),
+                "a": pack.add(force[rows]),
+                "on": place in shown,
+            }
         )
     if not series:
         return None
-    content = {
+    content: dict[str, Any] = {
         "key": "force-position",
         "title": "Contact force over the position of the wheel",
         "unit": "kN",
@@ -59,6 +71,10 @@ def forces_over_position(stored: Stored, pack: Pack, ends: tuple[float, float] |
         at, low, high = band_over(positions, 1e-3 * table, window, 500)
         content["band"] = {"x": pack.add(at, "f8"), "low": pack.add(low), "high": pack.add(high)}
     return content
+
+
+def _same(values: FloatArray, column: int) -> FloatArray:
+    return values
 
 
 def _window(ends: tuple[float, float] | None, low: float, high: float) -> tuple[float, float]:

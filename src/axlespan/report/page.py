@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import os
 import secrets
 from collections.abc import Mapping
 from html import escape
-from importlib.resources import files
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -18,17 +16,19 @@ from axlespan.io.drawing import Drawing
 from axlespan.io.results import read_result
 from axlespan.io.strict_json import json_ready
 from axlespan.io.summary import summary as summary_of
+from axlespan.io.train_shapes import Unit
+from axlespan.report.assembly import assembled
 from axlespan.report.forces import forces_over_position
 from axlespan.report.maps import maps
 from axlespan.report.pack import Pack
 from axlespan.report.panels import panels
 from axlespan.report.scene import scene
-from axlespan.io.train_shapes import Unit
 from axlespan.report.shapes import units_of
 from axlespan.report.sketch import sketch
 from axlespan.report.space import space
 from axlespan.report.spectra import spectra
 from axlespan.report.stored import Stored, opened
+from axlespan.report.study_store import is_study
 from axlespan.report.tables import badge, check_table, peak_tables, verdict_table
 from axlespan.report.units import number
 from axlespan.report.words import case_content, given_values, sentences
@@ -36,16 +36,16 @@ from axlespan.report.words import case_content, given_values, sentences
 #: Name of the page beside the result.
 PAGE = "report.html"
 
-_SCRIPTS = ("inflate", "data", "export", "plots", "maps", "player", "flat", "space", "main")
+_SCRIPTS = ("inflate", "data", "export", "plots", "maps", "player", "flat", "space", "chrome", "main")
 
 
 def write_report(folder: str | PathLike[str], page: str | PathLike[str] | None = None) -> Path:
-    """Write the page of a stored result; the path of the page.
+    """Write the page of a stored result or study; the path of the page.
 
     Parameters
     ----------
     folder : path
-        Folder of a run, or its result.nc; that of a failed run too.
+        Folder of a run, or its result.nc, that of a failed run too; or the store of a study.
     page : path, optional
         Of the page; report.html in the folder when left out.
 
@@ -69,7 +69,11 @@ def write_report(folder: str | PathLike[str], page: str | PathLike[str] | None =
 
 
 def result_page(folder: str | PathLike[str]) -> str:
-    """The page of a stored result as text; see :func:`write_report`."""
+    """The page of a stored result or study as text; see :func:`write_report`."""
+    if is_study(Path(folder)):
+        from axlespan.report.study_page import study_page
+
+        return study_page(Path(folder))
     with opened(Path(folder)) as stored:
         return _page(stored)
 
@@ -99,7 +103,7 @@ def _page(stored: Stored) -> str:
         "version": escape(str(summary.get("version") or axlespan.__version__)),
         "badge": _outcome_badge(summary),
         "notices": _notices(stored, summary, content),
-        "words": _words(summary, case, units, ends),
+        "words": _words(summary, case, units, ends) + _trains(drawing),
         "cards": _cards(summary),
         "sketch": sketch(drawing, units, ends),
         "given": _given(case, stored),
@@ -108,7 +112,7 @@ def _page(stored: Stored) -> str:
         "peaks": peak_tables(summary),
         "notes": "".join(f"<li>{escape(str(note))}</li>" for note in summary.get("notes") or []),
     }
-    return _assembled(values, content, pack)
+    return assembled("page", values, content, pack, _SCRIPTS)
 
 
 # --- what the page says ------------------------------------------------------------------------
@@ -119,9 +123,14 @@ def _summary(stored: Stored) -> Mapping[str, Any]:
     if stored.summary:
         return stored.summary
     path = Path(stored.file.filename) if stored.file is not None else None
-    head = {"outcome": {key: stored.text(name) for key, name in _OUTCOME.items()}, "version": stored.text("version")}
+    head = {
+        "outcome": {key: stored.text(name) for key, name in _OUTCOME.items()},
+        "version": stored.text("version"),
+    }
     if path is not None:
-        stored.notices.append("There is no summary.json: the run may have been stopped. Tables are made from result.nc.")
+        stored.notices.append(
+            "There is no summary.json: the run may have been stopped. Tables are made from result.nc."
+        )
         try:
             made: dict[str, Any] = json_ready(summary_of(read_result(path)))
             return made | head
@@ -171,7 +180,9 @@ def _notices(stored: Stored, summary: Mapping[str, Any], content: Mapping[str, A
         )
     found += stored.notices
     if stored.file is not None and len(stored.time) > 1 and not content.get("maps"):
-        found.append("Motions along the line were not kept, so there are no maps over space and time (output: line: 41).")
+        found.append(
+            "Motions along the line were not kept, so there are no maps over space and time (output: line: 41)."
+        )
     items = "".join(f"<li>{escape(text)}</li>" for text in found)
     return f'<aside class="notices" aria-label="Notices"><ul>{items}</ul></aside>' if items else ""
 
@@ -183,6 +194,16 @@ def _words(
     base = max(wheels) - min(wheels) if wheels else None
     length = None if ends is None else ends[1] - ends[0]
     return "".join(f"<p>{escape(text)}</p>" for text in sentences(summary, case, base, length))
+
+
+def _trains(drawing: Drawing | None) -> str:
+    """All trains of a crossing, where there are several."""
+    trains = [] if drawing is None else drawing.content.get("trains", [])
+    if len(trains) < 2:
+        return ""
+    ways = {1: "forward", -1: "backward"}
+    words = "; ".join(f"{train['name']} ({ways[train['direction']]})" for train in trains)
+    return f"<p>{escape(f'{len(trains)} trains run: {words}.')}</p>"
 
 
 def _cards(summary: Mapping[str, Any]) -> str:
@@ -205,7 +226,9 @@ def _cards(summary: Mapping[str, Any]) -> str:
     forces = summary.get("contact_forces") or {}
     if forces.get("largest"):
         row = forces["largest"]
-        found.append(("Largest contact force", f"{number(1e-3 * row['force_N'])} kN", f"wheel {row['contact']}"))
+        found.append(
+            ("Largest contact force", f"{number(1e-3 * row['force_N'])} kN", f"wheel {row['contact']}")
+        )
         lost = forces.get("largest_unloading")
         if lost is not None:
             found.append(("Largest unloading", f"{number(100.0 * lost, 3)} %", "of the static force"))
@@ -214,7 +237,8 @@ def _cards(summary: Mapping[str, Any]) -> str:
         value = max(abs(body["min"]), abs(body["max"]))
         found.append(("Largest acceleration of a body", f"{number(value)} m/s²", "vertical"))
     return "".join(
-        f'<div class="card"><div class="what">{escape(a)}</div><div class="value">{escape(b)}</div><div class="where">{escape(c)}</div></div>'
+        f'<div class="card"><div class="what">{escape(a)}</div><div class="value">{escape(b)}</div>'
+        f'<div class="where">{escape(c)}</div></div>'
         for a, b, c in found
     )
 
@@ -226,39 +250,9 @@ def _given(case: Mapping[str, Any], stored: Stored) -> str:
         cells = "".join(f"<dt>{escape(key)}</dt><dd>{escape(value)}</dd>" for key, value in rows)
         blocks.append(f"<section><h3>{escape(name)}</h3><dl>{cells}</dl></section>")
     text = stored.text("case")
-    whole = f"<details><summary>The case file</summary><pre tabindex=0>{escape(text)}</pre></details>" if text else ""
+    whole = (
+        f"<details><summary>The case file</summary><pre tabindex=0>{escape(text)}</pre></details>"
+        if text
+        else ""
+    )
     return f'<div class="given">{"".join(blocks)}</div>{whole}' if blocks or whole else ""
-
-
-# --- how it becomes a file -----------------------------------------------------------------------
-
-
-def _assembled(values: Mapping[str, str], content: Mapping[str, Any], pack: Pack) -> str:
-    page = _resource("page/page.html")
-    script = "\n".join(_resource(f"page/{name}.js") for name in _SCRIPTS)
-    vendor = [_resource("vendor/uplot/uPlot.iife.min.js")]
-    if content.get("space"):
-        vendor.append(_resource("vendor/three/three-parts.min.js"))
-    parts = {
-        **values,
-        "style": _resource("vendor/uplot/uPlot.min.css") + _resource("page/page.css"),
-        "vendor": "\n".join(f"<script>{_safe(text)}</script>" for text in vendor),
-        "content": json.dumps(json_ready(content), ensure_ascii=False, separators=(",", ":")).replace("<", "\\u003c"),
-        "data": pack.text(),
-        "script": _safe(f'(() => {{\n"use strict";\n{script}\n}})();'),
-    }
-    pieces = page.split("{{")
-    found = [pieces[0]]
-    for piece in pieces[1:]:
-        name, _, rest = piece.partition("}}")
-        found += [parts[name], rest]
-    return "".join(found)
-
-
-def _resource(name: str) -> str:
-    return files("axlespan.report").joinpath(*name.split("/")).read_text(encoding="utf-8")
-
-
-def _safe(text: str) -> str:
-    """Text that cannot end the script element it stands in."""
-    return text.replace("</script", "<\\/script")

@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from axlespan.io.dof_units import is_rotation
-from axlespan.report.pack import Pack
 from axlespan.io.train_shapes import LOW
+from axlespan.report.pack import Pack
 from axlespan.report.stored import Stored
 from axlespan.report.thinning import chosen_columns, rows_for
 from axlespan.report.units import shown_unit
@@ -58,7 +58,9 @@ def groups(stored: Stored) -> list[Group]:
         Group("velocity", "Velocity at the sensors", "sensor_velocity", sensors, "m/s", open=False),
         Group("contact", "Contact forces", "contact_force", contacts, "N", "wheel "),
         Group("body-a", "Vertical acceleration of the vehicles", "vehicle_acceleration", parts, "m/s^2"),
-        Group("body-u", "Vertical displacement of the vehicles", "vehicle_displacement", parts, "m", open=False),
+        Group(
+            "body-u", "Vertical displacement of the vehicles", "vehicle_displacement", parts, "m", open=False
+        ),
         Group("pitch-u", "Rotation of the vehicles", "vehicle_displacement", turns, "rad", open=False),
         Group("reaction", "Support reactions", "support_reaction", forces, "N"),
         Group("reaction-m", "Support moments", "support_reaction", moments, "N m", open=False),
@@ -69,7 +71,9 @@ def groups(stored: Stored) -> list[Group]:
         ("shear", "Shear force at sections", "N"),
         ("normal", "Normal force at sections", "N"),
     ):
-        found.append(Group(f"section-{name}", title, f"section_{name}", sections, unit, open=name == "moment"))
+        found.append(
+            Group(f"section-{name}", title, f"section_{name}", sections, unit, open=name == "moment")
+        )
     found += _stresses(stored)
     return [group for group in found if group.columns and stored.has(group.variable)]
 
@@ -105,7 +109,10 @@ def _stresses(stored: Stored) -> list[Group]:
         "N m/m": tuple(i for i, name in enumerate(names) if name.rpartition(".")[2][:1] == "M"),
     }
     titles = {"N/m^2": "Stresses", "N/m": "Forces in shells", "N m/m": "Moments in shells"}
-    return [Group(f"stress-{i}", titles[unit], "stress_history", columns, unit) for i, (unit, columns) in enumerate(kinds.items())]
+    return [
+        Group(f"stress-{i}", titles[unit], "stress_history", columns, unit)
+        for i, (unit, columns) in enumerate(kinds.items())
+    ]
 
 
 def names_of(stored: Stored, group: Group) -> list[str]:
@@ -165,6 +172,8 @@ def _range(values: FloatArray) -> float:
 def _note(n: int, kept: int, all_curves: int, curves: int) -> str:
     words: Sequence[str] = [
         f"{kept} of {n} times are shown, with every peak." if kept < n else "",
-        f"{curves} of {all_curves} curves are on this page; result.nc has all." if curves < all_curves else "",
+        f"{curves} of {all_curves} curves are on this page; result.nc has all."
+        if curves < all_curves
+        else "",
     ]
     return " ".join(word for word in words if word)

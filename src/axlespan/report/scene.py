@@ -10,8 +10,9 @@ import numpy.typing as npt
 
 from axlespan.io.dof_units import is_rotation
 from axlespan.io.drawing import Drawing
-from axlespan.report.pack import Pack
 from axlespan.io.train_shapes import Unit
+from axlespan.report.legs import deck_height, legs
+from axlespan.report.pack import Pack
 from axlespan.report.stored import Stored
 
 FloatArray = npt.NDArray[np.float64]
@@ -23,7 +24,11 @@ _LEAST = 120
 
 
 def scene(
-    stored: Stored, pack: Pack, drawing: Drawing | None, units: Sequence[Unit], ends: tuple[float, float] | None
+    stored: Stored,
+    pack: Pack,
+    drawing: Drawing | None,
+    units: Sequence[Unit],
+    ends: tuple[float, float] | None,
 ) -> dict[str, Any] | None:
     """The animation of a crossing; None where nothing moves or nothing is known."""
     if ends is None or len(stored.time) < 2 or not units or not stored.has("contact_position"):
@@ -39,6 +44,7 @@ def scene(
         "units": [_unit(unit) for unit in units],
         "moves": _moves(stored, pack, frames, units),
         "supports": _supports(drawing, ends),
+        "legs": legs(drawing),
         "profile": _profile(pack, drawing),
         "notes": [],
     }
@@ -71,7 +77,9 @@ def _trains(
 def _profile(pack: Pack, drawing: Drawing | None) -> dict[str, Any] | None:
     """The irregularity that the wheels of the first train run on."""
     known = None if drawing is None else drawing.content.get("profile")
-    return None if known is None else {"from": known["from"], "step": known["step"], "r": pack.add(known["r"])}
+    return (
+        None if known is None else {"from": known["from"], "step": known["step"], "r": pack.add(known["r"])}
+    )
 
 
 def _on_track(drawing: Drawing) -> bool:
@@ -104,7 +112,11 @@ def _line(stored: Stored, pack: Pack, frames: IntArray) -> dict[str, Any] | None
     if len(positions) < 2 or not stored.has("line_displacement"):
         return None
     table = stored.rows("line_displacement", frames)
-    return {"x": pack.add(positions, "f8"), "w": pack.quantized(table), "most": float(np.nanmax(np.abs(table)))}
+    return {
+        "x": pack.add(positions, "f8"),
+        "w": pack.quantized(table),
+        "most": float(np.nanmax(np.abs(table))),
+    }
 
 
 def _ratio(stored: Stored, pack: Pack, frames: IntArray) -> dict[str, Any] | None:
@@ -153,9 +165,12 @@ def _moves(stored: Stored, pack: Pack, frames: IntArray, units: Sequence[Unit]) 
 def _supports(drawing: Drawing | None, ends: tuple[float, float]) -> list[dict[str, Any]]:
     """Places of vertical supports along the line."""
     found: dict[float, bool] = {}
+    below: dict[float, float] = {}
     for item in [] if drawing is None else drawing.content.get("supports", []):
         point = item.get("point")
         if point is not None and "z" in item["components"] and ends[0] - 1.0 <= point[0] <= ends[1] + 1.0:
             place = round(float(point[0]), 3)
             found[place] = found.get(place, False) or "x" in item["components"]
-    return [{"x": x, "fixed": fixed} for x, fixed in sorted(found.items())]
+            if drawing is not None and not drawing.content.get("space"):
+                below[place] = max(below.get(place, 0.0), deck_height(drawing) - float(point[2]))
+    return [{"x": x, "fixed": fixed, "below": below.get(x, 0.0)} for x, fixed in sorted(found.items())]

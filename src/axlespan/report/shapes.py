@@ -34,13 +34,17 @@ def _from_names(stored: Stored) -> list[tuple[dict[str, Any], float]]:
         wheels = []
         for i in mine:
             dof = f"wheel{contacts[i].partition('.')[2]}.z"
-            wheels.append({"behind": float(behind[i]) - start, "dof": dof if f"{vehicle}.{dof}" in dofs else None})
+            wheels.append(
+                {"behind": float(behind[i]) - start, "dof": dof if f"{vehicle}.{dof}" in dofs else None}
+            )
         parts = dict.fromkeys(
             name.split(".")[1]
             for name in stored.names("vehicle_dof")
             if name.startswith(f"{vehicle}.") and ".wheel" not in name and name.count(".") == 2
         )
-        found.append(({"name": f"vehicle {vehicle}", "wheels": wheels, "bodies": _spread(parts, wheels)}, start))
+        found.append(
+            ({"name": f"vehicle {vehicle}", "wheels": wheels, "bodies": _spread(parts, wheels)}, start)
+        )
     return found
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from html import escape
 from typing import Any
@@ -10,6 +11,7 @@ import numpy as np
 
 from axlespan.io.drawing import Drawing
 from axlespan.io.train_shapes import WHEEL_RADIUS, Unit
+from axlespan.report.legs import deck_height, legs
 from axlespan.report.units import plain
 
 _WIDTH = 1000.0  # of the drawing, in its own units
@@ -38,7 +40,9 @@ def sketch(drawing: Drawing | None, units: Sequence[Unit], ends: tuple[float, fl
     right = end + 0.12 * length
     scale = _WIDTH / (right - left)
     depth = _depth(drawing, length)
-    below = max(0.09 * length, depth + 0.05 * length)
+    props = legs(drawing)
+    lowest = min((min(z0, z1) for _, z0, _, z1 in props), default=0.0)
+    below = max(0.09 * length, depth + 0.05 * length, 0.05 * length - lowest)
     shown = [unit for unit in units if head - unit.front > left and head - unit.rear < right]
     above = max(4.6 if any(unit.boxes for unit in shown) else 2.4, 0.05 * length)
 
@@ -50,7 +54,12 @@ def sketch(drawing: Drawing | None, units: Sequence[Unit], ends: tuple[float, fl
 
     height = (above + below) * scale + 54.0
     parts = [_ground(x, y, left, right, begin, end, scale), _deck(x, y, begin, end, depth)]
-    parts += [_support(x, y, item, depth, scale) for item in _vertical(drawing, begin, end)]
+    parts += [
+        f'<path class="sk-leg" d="M{x(a):.1f} {y(b):.1f}L{x(c):.1f} {y(d):.1f}"/>' for a, b, c, d in props
+    ]
+    parts += [
+        _support(x, y, item, max(depth, item["below"]), scale) for item in _vertical(drawing, begin, end)
+    ]
     parts += [_vehicle(x, y, unit, head, scale) for unit in shown]
     parts.append(_dimensions(x, (above + below) * scale + 14.0, _stations(drawing, begin, end)))
     parts.append(_scale_bar(right - left, scale, height))
@@ -95,12 +104,16 @@ def _deck(x: Any, y: Any, begin: float, end: float, depth: float) -> str:
 def _vertical(drawing: Drawing | None, begin: float, end: float) -> list[dict[str, Any]]:
     """Supports that carry vertically, one for each place along the line."""
     found: dict[float, dict[str, Any]] = {}
-    for item in [] if drawing is None else drawing.content.get("supports", []):
+    if drawing is None:
+        return []
+    for item in drawing.content.get("supports", []):
         point = item.get("point")
         if point is None or "z" not in item["components"]:
             continue
         place = round(float(point[0]), 3)
-        known = found.setdefault(place, {"x": place, "fixed": False})
+        known = found.setdefault(place, {"x": place, "fixed": False, "below": 0.0})
+        if not drawing.content.get("space"):
+            known["below"] = max(known["below"], deck_height(drawing) - float(point[2]))
         known["fixed"] = known["fixed"] or "x" in item["components"]
     inside = [item for item in found.values() if begin - 1.0 <= item["x"] <= end + 1.0]
     return sorted(inside, key=lambda item: float(item["x"]))[:40]
@@ -111,7 +124,9 @@ def _support(x: Any, y: Any, item: dict[str, Any], depth: float, scale: float) -
     shape = f"M{center:.1f} {top:.1f}l{-0.6 * size:.1f} {size:.1f}h{1.2 * size:.1f}z"
     roller = ""
     if not item["fixed"]:
-        roller = f'<path class="sk-line" d="M{center - 0.8 * size:.1f} {top + 1.3 * size:.1f}h{1.6 * size:.1f}"/>'
+        roller = (
+            f'<path class="sk-line" d="M{center - 0.8 * size:.1f} {top + 1.3 * size:.1f}h{1.6 * size:.1f}"/>'
+        )
     return f'<path class="sk-support" d="{shape}"/>{roller}'
 
 
@@ -130,13 +145,17 @@ def _vehicle(x: Any, y: Any, unit: Unit, head: float, scale: float) -> str:
         radius = max(WHEEL_RADIUS * scale, 2.0)
         if not unit.boxes:
             top = y(2.2)
-            pieces.append(f'<path class="sk-load" d="M{center:.1f} {top:.1f}V{y(0) - 2.0:.1f}m-4 -8l4 8l4 -8"/>')
+            pieces.append(
+                f'<path class="sk-load" d="M{center:.1f} {top:.1f}V{y(0) - 2.0:.1f}m-4 -8l4 8l4 -8"/>'
+            )
             continue
         low = min(box.bottom for box in unit.boxes)
         if low > 2.0 * WHEEL_RADIUS:  # a suspension between wheel and body
             pieces.append(f'<path class="sk-spring" d="M{center:.1f} {y(WHEEL_RADIUS):.1f}V{y(low):.1f}"/>')
-        pieces.append(f'<circle class="sk-wheel" cx="{center:.1f}" cy="{y(WHEEL_RADIUS):.1f}" r="{radius:.1f}"/>')
-    return f'<g><title>vehicle {unit.number}: {escape(unit.name)}</title>{"".join(pieces)}</g>'
+        pieces.append(
+            f'<circle class="sk-wheel" cx="{center:.1f}" cy="{y(WHEEL_RADIUS):.1f}" r="{radius:.1f}"/>'
+        )
+    return f"<g><title>vehicle {unit.number}: {escape(unit.name)}</title>{''.join(pieces)}</g>"
 
 
 def _stations(drawing: Drawing | None, begin: float, end: float) -> list[float]:
@@ -146,14 +165,16 @@ def _stations(drawing: Drawing | None, begin: float, end: float) -> list[float]:
 
 def _dimensions(x: Any, level: float, stations: Sequence[float]) -> str:
     pieces = []
-    for a, b in zip(stations, stations[1:], strict=False):
+    for a, b in itertools.pairwise(stations):
         pieces.append(
             f'<path class="sk-line" d="M{x(a):.1f} {level:.1f}H{x(b):.1f}M{x(a):.1f} {level - 5:.1f}v10'
             f'M{x(b):.1f} {level - 5:.1f}v10"/>'
         )
         if x(b) - x(a) > 45.0:
             middle = 0.5 * (x(a) + x(b))
-            pieces.append(f'<text class="sk-text" x="{middle:.1f}" y="{level - 4:.1f}">{plain(b - a)} m</text>')
+            pieces.append(
+                f'<text class="sk-text" x="{middle:.1f}" y="{level - 4:.1f}">{plain(b - a)} m</text>'
+            )
     return "".join(pieces)
 
 

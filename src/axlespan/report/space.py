@@ -67,7 +67,9 @@ def _motion(stored: Stored, pack: Pack, drawing: Drawing) -> dict[str, Any] | No
     }
 
 
-def _stress(stored: Stored, pack: Pack, drawing: Drawing, rows: npt.NDArray[np.int64]) -> dict[str, Any] | None:
+def _stress(
+    stored: Stored, pack: Pack, drawing: Drawing, rows: npt.NDArray[np.int64]
+) -> dict[str, Any] | None:
     """Von Mises stresses (time, triangle) [MPa]."""
     table = drawing.arrays.get("face_stress")
     if table is None or table.ndim != 2 or len(table) <= int(rows.max(initial=0)):

@@ -1,8 +1,10 @@
 r"""Amplitude spectra of chosen histories.
 
-A history without its mean, under a Hann window $w$, has the amplitudes $A_k = 2 |\sum_j w_j u_j e^{-2\pi i jk/n}| / \sum_j w_j$:
+A history without its mean, under a Hann window $w$, has the amplitudes
+$A_k = 2 |\sum_j w_j u_j e^{-2\pi i jk/n}| / \sum_j w_j$:
 a steady harmonic motion shows its amplitude. The power spectral density is
-$A_k^2 / (2 \Delta f N_e)$ with the noise bandwidth $N_e = n \sum w^2 / (\sum w)^2$ of the window (Harris, Proc. IEEE 66, 51, 1978).
+$A_k^2 / (2 \Delta f N_e)$ with the noise bandwidth $N_e = n \sum w^2 / (\sum w)^2$ of the window
+(Harris, Proc. IEEE 66, 51, 1978).
 """
 
 from __future__ import annotations
@@ -40,7 +42,7 @@ def amplitudes(values: FloatArray, time_step: float) -> tuple[FloatArray, FloatA
     weight = window.sum()
     bandwidth = float(n * (window**2).sum() / weight**2)
     spectrum = np.abs(np.fft.rfft((values - values.mean()) * window)) * 2.0 / weight
-    return np.fft.rfftfreq(n, time_step), spectrum, bandwidth
+    return np.asarray(np.fft.rfftfreq(n, time_step), dtype=np.float64), np.asarray(spectrum), bandwidth
 
 
 def spectra(stored: Stored, pack: Pack) -> list[dict[str, Any]]:

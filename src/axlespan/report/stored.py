@@ -133,7 +133,9 @@ def opened(folder: Path) -> Iterator[Stored]:
         reason = " ".join(str(error).split())[:200]
         if not summary:
             rule = f"cannot be opened: it is no netCDF-4 file, or was cut short ({reason})"
-            raise InputError(rule, field="file", value=str(path), fix="Copy it again, or run the case again") from error
+            raise InputError(
+                rule, field="file", value=str(path), fix="Copy it again, or run the case again"
+            ) from error
         notices.append(
             f"{path.name} is cut short or damaged, so histories, maps and the animation are missing; the tables are "
             f"from summary.json. Copy the file again, or run the case again. ({reason})"
@@ -166,7 +168,9 @@ def _found(folder: Path) -> tuple[Path, Path | None, list[str]]:
         return folder, None, [said]
     if stages:
         rule = "holds a run that is not finished, or was stopped before it had a result"
-        raise InputError(rule, field="folder", value=str(folder), fix="Wait for it, or run the case again with --force")
+        raise InputError(
+            rule, field="folder", value=str(folder), fix="Wait for it, or run the case again with --force"
+        )
     raise InputError(
         f"is not a result of axlespan: it has no {RESULT}", field="folder", value=str(folder), fix=_RUN_IT
     )

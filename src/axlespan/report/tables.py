@@ -101,7 +101,16 @@ def check_table(summary: Summary) -> str:
             f'<td class="n" data-label="Limit">{"" if plain else number(limit, 2)}</td>'
             f'<td data-label="Verdict">{badge(str(check.get("verdict")))}</td></tr>'
         )
-    return _table("Self-checks of the computation", ("Check", "What it says", "Value", "Limit", "Verdict"), rows, (2, 3)) if rows else ""
+    return (
+        _table(
+            "Self-checks of the computation",
+            ("Check", "What it says", "Value", "Limit", "Verdict"),
+            rows,
+            (2, 3),
+        )
+        if rows
+        else ""
+    )
 
 
 def peak_tables(summary: Summary) -> str:
@@ -115,9 +124,11 @@ def _sensors(summary: Summary) -> str:
         if not found:
             continue
         cells = [f"<td>{escape(name)}</td>"]
-        for quantity, unit, factor in (("displacement", "m", 1e3), ("acceleration", "m_per_s2", 1.0)):
-            for end in ("min", "max"):
-                cells.append(_extreme(found.get(f"{quantity}_{end}_{unit}"), found.get(f"{quantity}_{end}_time_s"), factor))
+        cells += [
+            _extreme(found.get(f"{quantity}_{end}_{unit}"), found.get(f"{quantity}_{end}_time_s"), factor)
+            for quantity, unit, factor in (("displacement", "m", 1e3), ("acceleration", "m_per_s2", 1.0))
+            for end in ("min", "max")
+        ]
         rows.append(f"<tr>{''.join(cells)}</tr>")
     heads = ("Sensor", "Lowest [mm]", "Highest [mm]", "Lowest [m/s²]", "Highest [m/s²]")
     return _table("Extremes at the sensors", heads, rows, (1, 2, 3, 4)) if rows else ""
@@ -150,7 +161,8 @@ def _vehicles(summary: Summary) -> str:
     for part, found in list((summary.get("vehicle_accelerations") or {}).items())[:_ROWS]:
         unit = _unit_text(str(found["unit"]))
         cells = "".join(
-            _extreme(found[end], found[f"{end}_time_s"], 1.0) + f"<td>{escape(str(found[f'{end}_vehicle']))}</td>"
+            _extreme(found[end], found[f"{end}_time_s"], 1.0)
+            + f"<td>{escape(str(found[f'{end}_vehicle']))}</td>"
             for end in ("min", "max")
         )
         rows.append(f"<tr><td>{escape(part)} [{unit}]</td>{cells}</tr>")
@@ -160,7 +172,9 @@ def _vehicles(summary: Summary) -> str:
 
 def _reactions(summary: Summary) -> str:
     found = {
-        name: row for name, row in (summary.get("support_reactions") or {}).items() if "min_N" in row or "min_N_m" in row
+        name: row
+        for name, row in (summary.get("support_reactions") or {}).items()
+        if "min_N" in row or "min_N_m" in row
     }
     rows = []
     for name, row in list(found.items())[:_ROWS]:
@@ -170,7 +184,11 @@ def _reactions(summary: Summary) -> str:
         rows.append(f"<tr><td>{escape(label)}</td>{cells}</tr>")
     if len(found) > _ROWS:
         rows.append(f'<tr><td colspan="3">and {len(found) - _ROWS} more in summary.json</td></tr>')
-    return _table("Extremes of the support reactions", ("Support", "Lowest [kN]", "Highest [kN]"), rows, (1, 2)) if rows else ""
+    return (
+        _table("Extremes of the support reactions", ("Support", "Lowest [kN]", "Highest [kN]"), rows, (1, 2))
+        if rows
+        else ""
+    )
 
 
 def _extreme(value: Any, time: Any, factor: float) -> str:
@@ -182,7 +200,8 @@ def _extreme(value: Any, time: Any, factor: float) -> str:
 
 def _table(caption: str, heads: Sequence[str], rows: Sequence[str], numeric: Sequence[int] = ()) -> str:
     top = "".join(
-        f'<th scope="col"{" class=n" if i in numeric else ""}>{escape(head)}</th>' for i, head in enumerate(heads)
+        f'<th scope="col"{" class=n" if i in numeric else ""}>{escape(head)}</th>'
+        for i, head in enumerate(heads)
     )
     return (
         f'<div class="scroll" tabindex="0" role="region" aria-label="{escape(caption)}"><table><caption>{escape(caption)}'

@@ -70,8 +70,11 @@ def _irregularity(case: Mapping[str, Any]) -> str:
     kind = given.get("kind") if isinstance(given, dict) else None
     if kind in (None, "none"):
         return "The running surface is even." if given is None or kind == "none" else ""
+    assert isinstance(given, dict)  # it has a kind
     words = _PROFILES.get(str(kind), str(kind))
-    details = ", ".join(f"{key} {_plain(value)}" for key, value in given.items() if key not in ("kind", "points"))
+    details = ", ".join(
+        f"{key} {_plain(value)}" for key, value in given.items() if key not in ("kind", "points")
+    )
     return f"The running surface is uneven: {words}{f' ({details})' if details else ''}."
 
 
@@ -104,7 +107,11 @@ def _rows(value: Any, name: str) -> Iterator[tuple[str, str]]:
     if isinstance(value, Mapping):
         for key, item in value.items():
             yield from _rows(item, f"{name} › {key}" if name else str(key))
-    elif isinstance(value, Sequence) and not isinstance(value, str) and any(isinstance(v, Mapping) for v in value):
+    elif (
+        isinstance(value, Sequence)
+        and not isinstance(value, str)
+        and any(isinstance(v, Mapping) for v in value)
+    ):
         for i, item in enumerate(value):
             yield from _rows(item, f"{name} {i + 1}".strip())
     else:

@@ -7,7 +7,14 @@ from types import MappingProxyType
 
 from axlespan.interaction.crossing import Crossing
 from axlespan.interaction.result import Result
-from axlespan.standards import bridge_checks, deck_checks, moment_checks, ride_checks, wheel_checks
+from axlespan.standards import (
+    analysis_checks,
+    bridge_checks,
+    deck_checks,
+    moment_checks,
+    ride_checks,
+    wheel_checks,
+)
 from axlespan.standards.assessment import CHECKS, Assessment
 from axlespan.standards.bridge_facts import BridgeFacts, bridge_facts
 from axlespan.standards.given import Given
@@ -23,9 +30,9 @@ _WITH_EFFECTS = MappingProxyType(
 )
 _CHECKS: Mapping[str, Check] = MappingProxyType(
     {
-        "dynamic_analysis": bridge_checks.dynamic_analysis,
-        "critical_speed": bridge_checks.critical_speed,
-        "damping": bridge_checks.damping,
+        "dynamic_analysis": analysis_checks.dynamic_analysis,
+        "critical_speed": analysis_checks.critical_speed,
+        "damping": analysis_checks.damping,
         "deck_acceleration": deck_checks.deck_acceleration,
         "deflection": deck_checks.deflection,
         "dynamic_moment": moment_checks.dynamic_moment,

@@ -1,4 +1,4 @@
-"""Checks of the bridge as such: need of a dynamic analysis, damping, load model 71, dynamic effects of the train."""
+"""Checks of deflections against load model 71: its own, and the dynamic effects of the train."""
 
 from __future__ import annotations
 
@@ -11,34 +11,15 @@ import numpy.typing as npt
 from axlespan.errors import InputError
 from axlespan.linalg.factor import NotPositiveDefinite
 from axlespan.standards import dynamic_factors, lm71
-from axlespan.standards.bridge_values import (
-    ADDED_SOURCE,
-    DAMPING_SOURCE,
-    added_damping,
-    frequency_limits,
-    structural_damping,
-)
 from axlespan.standards.deck_checks import live_deflection
-from axlespan.standards.dynamic_analysis import (
-    FLOW_CHART,
-    LOWEST_SPEED,
-    OVERSPEED,
-    SPEEDS,
-    load_model,
-    need_of_dynamic_analysis,
-    resonance_speeds,
-)
 from axlespan.standards.given import Given
 from axlespan.standards.influence import deflection_lines
 from axlespan.standards.limits import limit_of
-from axlespan.standards.verdict import REPORTED, Verdict, judged, not_assessed
+from axlespan.standards.verdict import Verdict, judged, not_assessed
 
 FloatArray = npt.NDArray[np.float64]
 
 _NO_EFFECTS = "the static deflections cannot be computed"
-
-# Damping ratios are compared to so many digits: they come from eigenvectors.
-_DIGITS = 9
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,112 +53,6 @@ def span_effects(given: Given) -> list[SpanEffects]:
         train = lm71.train_effect(line, given.static_forces, behind, sign=-1.0)
         found.append(SpanEffects(float(start + 0.5 * span), float(span), model, train))
     return found
-
-
-def dynamic_analysis(given: Given) -> list[Verdict]:
-    """The flow chart: reported, not judged; with the load model to use."""
-    check, clause = "dynamic_analysis", "EN 1991-2 figure 6.9"
-    quantity = "need of a dynamic analysis"
-    facts, speed = given.facts, given.assessment.line_speed
-    if speed is None:
-        return [
-            not_assessed(
-                check, clause, quantity, "the line speed is not known: give line_speed", source=FLOW_CHART
-            )
-        ]
-    n0 = facts.first_frequency
-    if not facts.spans or n0 is None:
-        reason = facts.missing or "the first frequency is not known: give first_frequency"
-        return [not_assessed(check, clause, quantity, reason, source=FLOW_CHART)]
-    span = max(facts.spans)
-    need = need_of_dynamic_analysis(
-        line_speed=speed,
-        span=span,
-        continuous=facts.continuous,
-        simple=facts.simple,
-        first_frequency=n0,
-        torsional_frequency=given.assessment.torsional_frequency,
-    )
-    path = "; ".join(need.path)
-    if need.required is None:
-        return [not_assessed(check, clause, quantity, path, source=FLOW_CHART)]
-    limits = frequency_limits(span)
-    words = f"{need.words}: {path}"
-    if limits is not None and "n0" not in path:
-        words += f"; limits of n0 are {limits[0]:.3g} to {limits[1]:.3g} Hz"
-    if need.required:
-        words += f"; load model {load_model(facts.spans, simple=facts.simple and not facts.continuous)}"
-        words += f", speeds from {3.6 * LOWEST_SPEED:.0f} to {3.6 * OVERSPEED * speed:.0f} km/h"
-    verdict = Verdict(
-        check, clause, f"{quantity}; n0", REPORTED, n0, None, "Hz", source=FLOW_CHART, note=words
-    )
-    return [verdict]
-
-
-def critical_speed(given: Given) -> list[Verdict]:
-    """Resonance speeds f_j d / i up to 1.2 times the line speed; the one nearest to the run's is the value."""
-    check, clause = "critical_speed", "EN 1991-2 6.4.6.2"
-    quantity = "resonance speed nearest to that of the run"
-    distance = given.assessment.coach_length or _regular_distance(given)
-    if not given.facts.frequencies:
-        return [not_assessed(check, clause, quantity, "the frequencies of vertical bending are not known")]
-    if distance is None:
-        reason = "the train has no regular distance of three equal vehicles or more: give coach_length"
-        return [not_assessed(check, clause, quantity, reason, source=SPEEDS)]
-    highest = OVERSPEED * max(given.assessment.line_speed or 0.0, given.speed)
-    found = resonance_speeds(given.facts.frequencies, distance, highest=highest)
-    if not found:
-        reason = f"there is none up to {3.6 * highest:.0f} km/h"
-        return [not_assessed(check, clause, quantity, reason, source=SPEEDS)]
-    nearest, mode, order = min(found, key=lambda item: abs(item[0] - given.speed))
-    fast = [f"{3.6 * speed:.0f} (f{j} d/{i})" for speed, j, i in found if speed >= LOWEST_SPEED]
-    note = f"f{mode} d/{order} with d = {distance:.4g} m; the run has {3.6 * given.speed:.4g} km/h"
-    if fast:
-        note += f"; from 144 km/h on: {', '.join(fast)} km/h"
-    return [Verdict(check, clause, quantity, REPORTED, nearest, None, "m/s", source=SPEEDS, note=note)]
-
-
-def _regular_distance(given: Given) -> float | None:
-    """Distance [m] from vehicle to vehicle, if most of at least three of the first train have the same."""
-    if given.crossing is None:
-        return None
-    steps = np.diff([item.behind for item in given.crossing.runs[0].train.placements]).round(3)
-    if len(steps) < 2:
-        return None
-    values, counts = np.unique(steps, return_counts=True)
-    most = int(np.argmax(counts))
-    return float(values[most]) if 2 * counts[most] > len(steps) and values[most] > 0.0 else None
-
-
-def damping(given: Given) -> list[Verdict]:
-    """The model's damping of its first vertical mode against the lower bound by type and span."""
-    check, clause = "damping", "EN 1991-2 table 6.6"
-    quantity = "damping ratio of the first vertical mode"
-    kind, facts = given.assessment.bridge_type, given.facts
-    if kind is None:
-        reason = "the type of the bridge is not known: give bridge_type"
-        return [not_assessed(check, clause, quantity, reason, source=DAMPING_SOURCE)]
-    if not facts.spans or facts.damping_ratio is None:
-        reason = facts.missing or "the model's damping is not known"
-        return [not_assessed(check, clause, quantity, reason, source=DAMPING_SOURCE)]
-    span = min(facts.spans)
-    bound, source, note = structural_damping(kind, span), DAMPING_SOURCE, f"{kind}, span {span:.4g} m"
-    added = added_damping(span)
-    if bool(np.all(given.moving_forces)) and added > 0.0:
-        bound, source = bound + added, f"{source}; {ADDED_SOURCE}"
-        note += f"; {100.0 * added:.2g} % added for moving forces"
-    excess = limit_of("damping_excess", given.assessment).value or 1.0
-    verdict = judged(
-        check,
-        clause,
-        quantity,
-        round(facts.damping_ratio, _DIGITS),
-        round(bound * excess, _DIGITS),
-        "",
-        source=source,
-        note=f"no more than the lower bound may be taken; {note}",
-    )
-    return [verdict]
 
 
 def lm71_deflection(given: Given, effects: Sequence[SpanEffects]) -> list[Verdict]:

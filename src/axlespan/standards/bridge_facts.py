@@ -47,6 +47,20 @@ class BridgeFacts:
         """n0 [Hz]."""
         return self.frequencies[0] if self.frequencies else None
 
+    @property
+    def words(self) -> str:
+        """One line for people."""
+        parts = [self.missing]
+        if self.spans:
+            kind = "continuous" if self.continuous else "simple"
+            lengths = ", ".join(f"{span:.4g}" for span in self.spans)
+            parts = [f"{kind} span{'s' if len(self.spans) > 1 else ''} of {lengths} m"]
+        if self.determinant_length is not None:
+            parts.append(f"L_Φ {self.determinant_length:.4g} m")
+        if self.frequencies:
+            parts.append(f"n0 {self.frequencies[0]:.4g} Hz")
+        return ", ".join(part for part in parts if part)
+
 
 def bridge_facts(structure: Structure, assessment: Assessment) -> BridgeFacts:
     """Spans, frequencies and damping of a structure; what the assessment says of them goes before."""

@@ -14,6 +14,9 @@ from axlespan.standards.verdict import FROM_MEMORY
 
 FloatArray = npt.NDArray[np.float64]
 
+# A train of fewer axles has no regular distance to speak of.
+_FEWEST_AXLES = 12
+
 FLOW_CHART = f"EN 1991-2:2003 figure 6.9; {FROM_MEMORY}"
 SPEEDS = f"EN 1991-2:2003 6.4.6.2; {FROM_MEMORY}"
 TRAINS = f"EN 1991-2:2003 table 6.4; {FROM_MEMORY}"
@@ -134,6 +137,25 @@ def resonance_speeds(
         for order in range(1, orders + 1)
     ]
     return sorted(item for item in found if lowest <= item[0] <= highest)
+
+
+def regular_distance(loads: FloatArray, behind: FloatArray) -> float | None:
+    r"""The distance d [m] at which a train's axles add up most, from 10 to 40 m; None if no distance stands out.
+
+    It is where :math:`|\sum_k P_k e^{2πi x_k / d}| / \sum_k P_k` is largest, if that is at least one half.
+
+    Parameters
+    ----------
+    loads, behind : array (n_wheel,)
+        Static forces [N] and distances behind the first wheel [m].
+    """
+    if len(loads) < _FEWEST_AXLES:
+        return None
+    distances = np.arange(10.0, 40.0, 0.01)
+    turns = np.exp(2j * np.pi * np.asarray(behind) / distances[:, None])
+    together = np.abs(turns @ loads) / float(np.sum(loads))
+    best = int(np.argmax(together))
+    return float(distances[best]) if together[best] >= 0.5 else None
 
 
 def speeds_to_analyze(

@@ -169,6 +169,7 @@ def _options(analysis: Any, output: Any, made: BuiltStructure) -> Mapping[str, A
         "sleepers": analysis.load_distribution.spacing if analysis.load_distribution else None,
         "coupling": analysis.method,
         "solver": analysis.solver,
+        "threads": analysis.threads,
         "every": output.every,
         "reactions": output.reactions,
         "sensors": {

@@ -48,7 +48,7 @@ def structure_of(case: case_structure.Structure) -> BuiltStructure:
     if isinstance(case, TrackStructure):
         return structure_of_track(case)
     if isinstance(case, MeshStructure):
-        return structure_of_mesh(case)
+        return laid_on(structure_of_mesh(case), case.track)
     return structure_of_matrices(case)
 
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Any, TypeVar
 
 from axlespan.bridges import Track, Zone, ballasted_track, slab_track, track_on_ground, with_track
+from axlespan.bridges.unilateral import with_unilateral_springs
 from axlespan.errors import InputError
 from axlespan.running.structure import DECK_LINE, Structure
 from axlespan.study import case_track
@@ -51,6 +52,7 @@ def laid_on(
                 rail_elements=case.rail_elements,
             )
         )
+        structure = _pointed(lambda: _resting(structure, case))
     words = tuple(f"track: {warning.message}" for warning in said)
     facts = (*built.facts, *_facts(structure, track))
     return replace(built, structure=structure, facts=facts, warnings=(*built.warnings, *words))
@@ -77,7 +79,20 @@ def structure_of_track(case: case_track.TrackStructure) -> BuiltStructure:
         ),
         apart=("length",),
     )
+    structure = _pointed(lambda: _resting(structure, own))
     return BuiltStructure(structure, tuple(_facts(structure, track)))
+
+
+def _resting(structure: Structure, case: case_track.BallastedTrack | case_track.SlabTrack) -> Structure:
+    """The track with ballast that only pushes, where its case asks for that."""
+    if not isinstance(case, case_track.BallastedTrack) or not case.is_unilateral:
+        return structure
+    assert structure.model is not None
+    hanging = [(sleeper.at, sleeper.gap) for sleeper in case.hanging_sleepers]
+    names = [part.name for part in structure.model.parts if part.name.partition("-")[0] == "ballast"]
+    for name in dict.fromkeys(names):
+        structure = with_unilateral_springs(structure, name, hanging=hanging)
+    return structure
 
 
 def _zones(case: case_track.BallastedTrack | case_track.SlabTrack) -> list[Zone]:

@@ -11,7 +11,7 @@ from axlespan.running.structure import MAIN_LINE, Structure
 from axlespan.study import case_train
 from axlespan.study.build_multibody import loaded_train, require_line, vehicle_of_bodies
 from axlespan.study.case_multibody import Multibody
-from axlespan.study.case_train import Unit, first_wheels
+from axlespan.study.case_placing import Unit, first_wheels
 from axlespan.study.case_vehicle_imported import MatricesVehicle, MeshVehicle
 from axlespan.study.faults import InputErrors
 from axlespan.study.imported_vehicles import vehicle_of_matrices, vehicle_of_mesh

@@ -11,9 +11,9 @@ from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, model_va
 from axlespan.errors import InputError
 from axlespan.interaction.outputs import ENVELOPES
 from axlespan.interaction.settings import LOST_AFTER
-from axlespan.study.check_lists import Several
 from axlespan.study.case_contact import KINDS as CONTACT_KINDS
 from axlespan.study.case_contact import Contact, RigidContact
+from axlespan.study.check_lists import Several
 from axlespan.study.checks import Location, Measured, OneOf, Part, Whole
 from axlespan.study.faults import InputErrors, listed, nearest
 from axlespan.study.kinds import LIST, MAPPING, Kinds, list_or_mapping, tag
@@ -46,7 +46,9 @@ class ThreeSleepers(Part):
     """Spacing of the sleepers."""
 
 
-_DISTRIBUTIONS = Kinds("load distribution", ("sleepers",), "sleepers", words_alone=("sleepers",))
+_DISTRIBUTIONS = Kinds(
+    "load distribution", ("sleepers",), "{kind: sleepers, spacing: 0.6 m}", words_alone=("point", "sleepers")
+)
 
 
 def _read_distribution(raw: Any) -> Any:
@@ -93,7 +95,9 @@ class Analysis(Part):
     ] = AUTO
     """Length over which a wheel spreads its force; 0 for a point."""
     load_distribution: Annotated[
-        ThreeSleepers | None, BeforeValidator(_read_distribution), Field(examples=["sleepers"])
+        ThreeSleepers | None,
+        BeforeValidator(_read_distribution),
+        Field(examples=["sleepers"], json_schema_extra=_DISTRIBUTIONS.words_in_schema),
     ] = None
     """How an axle load reaches a structure without track: in one point, or by three sleepers."""
     tolerance: Factor | None = None
@@ -104,6 +108,8 @@ class Analysis(Part):
     """Of the iterative method."""
     solver: Annotated[str, OneOf(SOLVERS)] = "auto"
     """Solver of the linear systems."""
+    threads: Count | None = None
+    """Threads of the solver, where it can use them (PARDISO); AXLESPAN_THREADS or one when left out."""
     gravity: Gravity = 9.81
     """Acceleration of gravity, positive."""
 

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from axlespan.study.case_damping import StructuralDamping
 from axlespan.study.case_support import Bearing
-from axlespan.study.case_track import Track
+from axlespan.study.case_track import Laid
 from axlespan.study.check_lists import Several
 from axlespan.study.checks import Measured, Part
 from axlespan.study.quantities import (
@@ -29,7 +29,7 @@ class GridSection(Part):
 
     second_moment: SecondMoment
     """Second moment of area for vertical bending."""
-    torsion_constant: SecondMoment
+    torsion_constant: Annotated[SecondMoment, Field(examples=["0.02 m^4"])]
     """Torsion constant (St. Venant); of a slab strip b t^3 / 6."""
     area: Area
     """Area of the cross-section."""
@@ -69,5 +69,5 @@ class BeamGrid(Part):
     """Bearings at both ends of each girder; rigid when left out."""
     damping: StructuralDamping | None = None
     """Structural damping; none when left out."""
-    track: Annotated[Track | None, Field(examples=["{kind: ballasted, preset: zhai-2004}"])] = None
+    track: Laid = None
     """Track on the lines left and right of the first track, before and behind the deck."""

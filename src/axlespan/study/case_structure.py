@@ -13,7 +13,7 @@ from axlespan.study.case_grid import BeamGrid
 from axlespan.study.case_imported import MeshStructure
 from axlespan.study.case_matrices import MatricesStructure
 from axlespan.study.case_support import Bearing, Springs, Support
-from axlespan.study.case_track import Track, TrackStructure
+from axlespan.study.case_track import Laid, TrackStructure
 from axlespan.study.checks import OneOf, Part
 from axlespan.study.faults import InputErrors
 from axlespan.study.kinds import Kinds, tag
@@ -69,7 +69,7 @@ class SimpleSpan(Part):
     """Zones that have lost stiffness."""
     temperature: Annotated[Temperature | None, Field(examples=["{value: 25, coefficient: -0.003}"])] = None
     """Temperature that the stiffness follows; no effect when left out."""
-    track: Annotated[Track | None, Field(examples=["{kind: ballasted, preset: zhai-2004}"])] = None
+    track: Laid = None
     """Track on the bridge, before and behind it; wheels run on the deck when left out."""
 
     @model_validator(mode="after")
@@ -133,7 +133,7 @@ class _Spans(BeamProperties):
     """Zones that have lost stiffness."""
     temperature: Annotated[Temperature | None, Field(examples=["{value: 25, coefficient: -0.003}"])] = None
     """Temperature that the stiffness follows; no effect when left out."""
-    track: Annotated[Track | None, Field(examples=["{kind: ballasted, preset: zhai-2004}"])] = None
+    track: Laid = None
     """Track on the bridge, before and behind it; wheels run on the deck when left out."""
 
     @property

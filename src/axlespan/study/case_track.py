@@ -11,7 +11,7 @@ from axlespan.bridges.rails import RAILS
 from axlespan.bridges.track_presets import PRESETS
 from axlespan.errors import InputError
 from axlespan.study.check_lists import Several
-from axlespan.study.checks import Checked, Measured, Part, Whole
+from axlespan.study.checks import Checked, Measured, OneOf, Part, Whole
 from axlespan.study.faults import InputErrors, listed, nearest
 from axlespan.study.kinds import LIST, Kinds, tag
 from axlespan.study.quantities import (
@@ -90,6 +90,18 @@ class TrackZone(Part):
         return self
 
 
+BALLASTS = ("linear", "unilateral")
+
+
+class HangingSleeper(Part):
+    """A sleeper that stands off its ballast while the track carries nothing, not even itself."""
+
+    at: Annotated[Length, Field(examples=["5.4 m"])]
+    """Position along the track; the nearest sleeper is meant."""
+    gap: Annotated[float, Measured(LENGTH, above=0.0, believable=(1e-5, 0.05))]
+    """Gap under it."""
+
+
 class _AnyTrack(Part):
     rail: Annotated[str | None, RailName()] = None
     """Rail: 60E1, 54E1, ...; that of the preset when left out."""
@@ -152,6 +164,20 @@ class BallastedTrack(_AnyTrack):
     """Ballast under a sleeper on the bridge; as on the ground when left out."""
     deck_ballast_damping: Dashpot | None = None
     """Ballast under a sleeper on the bridge."""
+    ballast: Annotated[str, OneOf(BALLASTS)] = "linear"
+    """Whether the ballast holds its sleepers down too, or can only push: unilateral."""
+    hanging_sleepers: Annotated[tuple[HangingSleeper, ...], Field(examples=["[{at: 5.4 m, gap: 1 mm}]"])] = ()
+    """Sleepers with a gap under them, which makes the ballast unilateral."""
+
+    @property
+    def is_unilateral(self) -> bool:
+        """Whether sleepers may part from the ballast."""
+        return self.ballast == "unilateral" or bool(self.hanging_sleepers)
+
+    def values(self) -> dict[str, float]:
+        """Values of the track that are given, by their names in Python."""
+        own = {"ballast", "hanging_sleepers"}
+        return {name: value for name, value in super().values().items() if name not in own}
 
 
 class SlabTrack(_AnyTrack):
@@ -191,6 +217,9 @@ Track = Annotated[
     BeforeValidator(KINDS.checked),
 ]
 
+_IN_SCHEMA: Any = {"json_schema_extra": KINDS.words_in_schema}
+Laid = Annotated[Track | None, Field(examples=["{kind: ballasted, preset: zhai-2004}"], **_IN_SCHEMA)]
+
 
 class TrackStructure(Part):
     """A track on the ground, with no bridge."""
@@ -198,7 +227,7 @@ class TrackStructure(Part):
     kind: Literal["track"]
     length: SpanLength
     """Length from end to end, a whole number of spacings."""
-    track: Annotated[Track, Field(examples=["{kind: ballasted, preset: zhai-2004}"])]
+    track: Annotated[Track, Field(examples=["{kind: ballasted, preset: zhai-2004}"], **_IN_SCHEMA)]
     """What it is made of."""
     space: Flag = False
     """Whether there are two rails, left and right, on sleepers that roll."""

@@ -101,18 +101,20 @@ def test_extremes_are_those_of_the_histories(study, tmp_path):
 def test_a_run_lasts_until_the_last_wheel_has_left(study):
     plan = study.scenario(0).built.plan
     leaves = (10.0 + 5.0) / (100 / 3.6)
-    assert plan.settings.steps == int(np.ceil((leaves + 0.1) / 0.004))
+    wanted = int(np.ceil((leaves + 0.1) / 0.004))  # 160, in steps of 16
+    assert wanted <= plan.settings.steps < wanted * 1.125 and plan.settings.steps % 16 == 0
 
 
-def test_full_disks_at_random_moments(study, tmp_path, monkeypatch, small_parts):
+def test_full_disks_at_random_moments(study_file, tmp_path, monkeypatch, small_parts):
+    study = Study.load(study_file(WITH_HISTORIES.replace("step: 40", "step: 100")))
     study.run(tmp_path / "reference")
     chosen = random.Random(5)
     write = files.write_whole
-    for attempt in range(20):
+    for attempt in range(5):
         folder = tmp_path / f"out{attempt}"
         resume = False
         for _ in range(2):
-            room = chosen.randrange(1, 30)
+            room = chosen.randrange(1, 16)
 
             def full(path, content, left=[room]):  # noqa: B006
                 left[0] -= 1
@@ -143,7 +145,7 @@ def test_kills_at_random_moments(study, path, tmp_path, start):
     chosen = random.Random(11)
     folder = tmp_path / "out"
     whole = None
-    for what in ("nothing", "run", "worker", "run", "worker"):
+    for what in ("nothing", "run", "worker"):
         if what == "nothing":
             begun = time.monotonic()
             process = start(path, "-o", tmp_path / "timed", "--workers", 2)
@@ -237,14 +239,30 @@ def test_a_folder_that_cannot_be_written_leaves_nothing(study, tmp_path):
 def test_a_failed_scenario_is_a_row_with_its_reason(study_file, tmp_path):
     text = STUDY.replace("{factor: [0.9, 1.1]}", "[0.1 m^4]").replace(
         "  crossing.speed: {from: 100 km/h, to: 300 km/h, step: 40 km/h}\n",
-        "  crossing.speed: [100 km/h]\n  analysis.beta: [0.3025, 0.01]\n",
+        "  crossing.speed: [100 km/h]\n  analysis.method: [direct, iterative]\n"
+        "  analysis.max_iterations: [2]\n",
     )
-    study = Study.load(study_file(text))
+    with pytest.raises(InputError, match="is only for method: iterative"):
+        Study.load(study_file(text))
+    study = Study.load(study_file(text.replace("[direct, iterative]", "[iterative]").replace("[2]", "[2, 200]")))
     outcome = study.run(tmp_path / "out")
     table = study.table()
     assert outcome.failed == 2 and outcome.missing == 0
-    assert table.loc[[0, 1], "outcome"].tolist() == ["completed", "completed"]
-    assert set(table.loc[[2, 3], "outcome"]) <= {"failed", "invalid"}
-    assert all(len(reason) > 10 for reason in table.loc[[2, 3], "reason"])
-    assert table.loc[[2, 3], "line_acceleration_max_m_per_s2"].isna().all()
+    assert table["outcome"].tolist() == ["failed", "failed", "completed", "completed"]
+    assert all("converge" in reason for reason in table["reason"][:2])
+    assert table["line_acceleration_max_m_per_s2"].isna().tolist() == [True, True, False, False]
     assert study.run(tmp_path / "out", resume=True).computed == 0
+
+
+def test_a_scenario_that_makes_no_case_is_refused_or_a_row(study_file, tmp_path):
+    text = STUDY.replace("{factor: [0.9, 1.1]}", "[0.1 m^4]").replace("step: 40", "step: 200")
+    with pytest.raises(InputError, match=r"study.yaml:14:27: vary.analysis.beta = 0.01: must be at least 0.3"):
+        Study.load(study_file(text.replace("passage", "  analysis.beta: [0.3025, 0.01]\npassage"))).run(tmp_path / "o")
+    random = "  analysis.beta: {distribution: uniform, from: 0.2, to: 0.4}\nsampling: {method: sobol, count: 4}\n"
+    study = Study.load(study_file(text.replace("passage", f"{random}passage")))
+    study.run(tmp_path / "out")
+    table = study.table()
+    valid = table["analysis.beta"] >= 0.3025
+    assert 0 < valid.sum() < len(table)
+    assert (table["outcome"] == np.where(valid, "completed", "invalid")).all()
+    assert table["reason"][~valid].str.contains("conditionally stable").all()

@@ -8,7 +8,7 @@ class FlatView {
   }
 
   fit() {
-    const px = devicePixelRatio || 1, W = Math.max(this.stage.clientWidth, 200), H = W < 560 ? 210 : 290;
+    const px = devicePixelRatio || 1, W = Math.max(this.stage.clientWidth, 200), H = (W < 560 ? 210 : 290) + (this.scene.legs.length ? 70 : 0);
     this.W = W; this.H = H;
     this.canvas.width = Math.round(W * px); this.canvas.height = Math.round(H * px);
     this.canvas.style.height = `${H}px`;
@@ -27,7 +27,7 @@ class FlatView {
     const { scene, state, W, H } = this, ctx = this.canvas.getContext("2d"), px = devicePixelRatio || 1;
     ctx.setTransform(px, 0, 0, px, 0, 0);
     ctx.clearRect(0, 0, W, H);
-    const [left, right] = this.window_(), scale = W / (right - left), base = 0.6 * H, f = state.factor;
+    const [left, right] = this.window_(), scale = W / (right - left), base = (scene.legs.length ? 0.38 : 0.6) * H, f = state.factor;
     const X = s => (s - left) * scale, Y = z => base - z * scale, [a, b] = scene.ends, L = b - a;
     const depth = Math.min(Math.max(0.05 * L, 0.3), 2.2), color = name => css(name);
     ctx.lineJoin = "round";
@@ -36,6 +36,12 @@ class FlatView {
     const drop = Math.max(0.6 * scale, 8);
     if (a > left) ctx.fillRect(0, base, X(a), drop);
     if (b < right) ctx.fillRect(X(b), base, W - X(b), drop);
+    // piers and legs: their heads go with the deck
+    ctx.strokeStyle = color("--deck"); ctx.lineWidth = Math.min(12, Math.max(4, 0.5 * scale));
+    for (const [x0, z0, x1, z1] of scene.legs) {
+      const end = (x, z) => [X(x), Y(z + (z > -0.05 ? f * scene.w(x) : 0))];
+      ctx.beginPath(); ctx.moveTo(...end(x0, z0)); ctx.lineTo(...end(x1, z1)); ctx.stroke();
+    }
     // structure: where it was, and where it is
     const begin = Math.max(a, left), end = Math.min(b, right), n = Math.max(2, Math.min(240, Math.round((end - begin) * scale / 4)));
     ctx.strokeStyle = color("--soft"); ctx.lineWidth = 1; ctx.setLineDash([4, 4]);
@@ -56,7 +62,7 @@ class FlatView {
     const size = Math.min(Math.max(0.9 * scale, 8), 15);
     ctx.fillStyle = color("--deck-line");
     for (const p of scene.supports) {
-      const x = X(p.x), y = Y(f * scene.w(p.x)) + depth * scale;
+      const x = X(p.x), y = p.below > depth ? Y(-p.below) : Y(f * scene.w(p.x)) + depth * scale;
       ctx.beginPath(); ctx.moveTo(x, y); ctx.lineTo(x - 0.6 * size, y + size); ctx.lineTo(x + 0.6 * size, y + size); ctx.closePath(); ctx.fill();
       if (!p.fixed) ctx.fillRect(x - 0.8 * size, y + 1.2 * size, 1.6 * size, 1.6);
     }

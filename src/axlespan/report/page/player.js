@@ -4,7 +4,7 @@ const nice = v => { if (!(v > 0)) return 1; const p = 10 ** Math.floor(Math.log1
 
 class Scene {
   constructor(spec) {
-    this.ends = spec.ends; this.units = spec.units; this.supports = spec.supports; this.line = spec.line;
+    this.ends = spec.ends; this.units = spec.units; this.supports = spec.supports; this.legs = spec.legs; this.line = spec.line;
     this.time = arrays(spec.t);
     this.trains = spec.trains.map(t => ({ at: arrays(t.head), way: t.direction }));
     this.profile = spec.profile ? { ...spec.profile, r: arrays(spec.profile.r) } : null;

@@ -9,7 +9,7 @@ class Plot {
     this.shownOn = this.series.map(s => s.on !== false);
     // What shows at first gets the colors that differ most.
     let on = 0, off = this.shownOn.filter(Boolean).length;
-    this.paint = this.shownOn.map(v => v ? on++ : off++);
+    this.paint = this.shownOn.map((v, i) => this.series[i].paint ?? (v ? on++ : off++));
     this.curves = el("div", { class: "curves", role: "group", "aria-label": "Curves" });
     this.outputs = this.series.map((s, i) => {
       const out = el("output"), swatch = el("i");
@@ -46,7 +46,7 @@ class Plot {
     this.first = this.band && this.tables ? 3 : 1;  // the band is drawn first, below the curves
     const axis = { stroke: ink, grid: { stroke: grid, width: 1 }, ticks: { stroke: grid }, font: "12px system-ui, sans-serif", labelFont: "12px system-ui, sans-serif" };
     const format = (u, splits) => splits.map(v => tickText(v, splits));
-    const series = this.series.map((s, i) => ({ label: s.name, stroke: curveColor(this.paint[i]), dash: curveDash(this.paint[i]), width: 1.5, show: this.shownOn[i], points: { show: false }, scale: "y" }));
+    const series = this.series.map((s, i) => ({ label: s.name, stroke: curveColor(this.paint[i]), dash: curveDash(this.paint[i]), width: 1.5, show: this.shownOn[i], points: { show: Boolean(this.dots && s.y.length <= 120), size: 6 }, scale: "y" }));
     if (this.first > 1) for (let i = 0; i < 2; i++) series.unshift({ label: "all", stroke: css("--band"), width: 0.5, points: { show: false }, scale: "y" });
     const nearest = (u, s, i) => {
       if (s === 0 || u.data[s][i] != null) return i;
@@ -69,6 +69,12 @@ class Plot {
     // Where few points stand on the screen they show as such; gaps (nan) stay gaps.
     this.u = new uPlot(options, data.map((a, i) => i && !this.tables && a.some(Number.isNaN) ? Array.from(a, v => Number.isNaN(v) ? null : v) : a), this.frame);
     this.u.over.append(this.now);
+    if (this.pick) {
+      let down = null;
+      this.u.over.style.cursor = "pointer";
+      this.u.over.addEventListener("mousedown", e => { down = e.clientX; });
+      this.u.over.addEventListener("click", e => { if (down != null && Math.abs(e.clientX - down) < 4) this.picked(); });
+    }
     if (!this.full) {
       this.full = [this.u.data[0][0], this.u.data[0][this.u.data[0].length - 1]];
       if (this.window) this.quietly(() => this.u.setScale("x", { min: this.window[0], max: this.window[1] }));
@@ -129,6 +135,20 @@ class Plot {
     if (this.timed && !this.quiet) pointed.tell(x, this);
   }
 
+  // The curve that is nearest to the cursor at its abscissa.
+  picked() {
+    const u = this.u;
+    if (u.cursor.left < 0) return;
+    let best = Infinity, chosen = -1;
+    this.series.forEach((s, i) => {
+      const at = u.cursor.idxs[i + this.first];
+      if (!this.shownOn[i] || at == null) return;
+      const d = Math.hypot(u.valToPos(u.data[0][at], "x") - u.cursor.left, u.valToPos(u.data[i + this.first][at], "y") - u.cursor.top);
+      if (d < best) { best = d; chosen = i; }
+    });
+    if (chosen >= 0) this.pick(this.series[chosen], u.data[0][u.cursor.idxs[chosen + this.first]]);
+  }
+
   point(t) {
     if (!this.u) return;
     this.quietly(() => {
@@ -159,6 +179,7 @@ class Plot {
     } else if (e.key === "+" || e.key === "=") zoom(0.6);
     else if (e.key === "-") zoom(1 / 0.6);
     else if (e.key === "0" || e.key === "Home") u.setScale("x", { min: this.full[0], max: this.full[1] });
+    else if (e.key === "Enter" && this.pick) this.picked();
     else if (e.key === "Escape") u.setCursor({ left: -10, top: -10 });
     else return;
     e.preventDefault();

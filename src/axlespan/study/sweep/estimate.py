@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -14,6 +14,7 @@ from axlespan.errors import InputError
 from axlespan.interaction.plan import Plan
 from axlespan.interaction.simulate import run_plans
 from axlespan.study.build import BuiltCase
+from axlespan.study.faults import InputErrors
 from axlespan.study.size import size_of
 from axlespan.study.sweep.peaks import has_passed
 from axlespan.study.sweep.planning import MOST_LANES, count_factorizations, count_tasks, lanes_for
@@ -67,24 +68,47 @@ class Estimate:
     memory: float  # of one worker beside the program itself [byte]
 
 
-def try_out(recipe: Recipe, scenarios: Scenarios, *, timed: bool = True) -> Trial:
+def try_out(
+    recipe: Recipe,
+    scenarios: Scenarios,
+    located: Callable[[InputError, int], InputError],
+    *,
+    timed: bool = True,
+    forgiving: bool = False,
+) -> Trial:
     """Build some scenarios of a study, and time the first steps of a few.
+
+    Parameters
+    ----------
+    located : callable
+        Points an error of a scenario to the value that is to blame.
+    forgiving : bool
+        Whether some may fail, as in a random study, whose table then says why.
 
     Raises
     ------
     InputError
-        If one of them cannot be built.
+        If one of them cannot be built, or none.
     """
     workshop = Workshop(recipe)
     ids = np.unique(np.linspace(0, len(scenarios) - 1, _BUILT).astype(np.int64)).tolist()
     built: list[BuiltCase] = []
     times: list[float] = []
-    for values in scenarios.values(ids):
+    faults: list[InputError] = []
+    values = scenarios.values(ids)
+    good = values[0]
+    for number, own in zip(ids, values, strict=True):
         begun = time.perf_counter()
-        built.append(workshop.build(values))
-        times.append(time.perf_counter() - begun)
+        try:
+            built.append(workshop.build(own))
+            good = own
+            times.append(time.perf_counter() - begun)
+        except InputError as error:
+            faults.append(located(error, number))
+    if faults and not (forgiving and built):
+        raise InputErrors(faults[:1] if built else faults)
     begun = time.perf_counter()
-    workshop.build(scenarios.values([ids[0]])[0])
+    workshop.build(good)
     again = time.perf_counter() - begun
     plans = [one.plan for one in built]
     alone, beside, start = _timed(plans) if timed else (0.0, 0.0, 0.0)

@@ -81,7 +81,7 @@ class OnDask:
 
 
 @contextmanager
-def on_dask(address: str, workers: int | None = None, patience: float = PATIENCE) -> Iterator[OnDask]:
+def on_dask(address: str, workers: int | None = None, patience: float | None = None) -> Iterator[OnDask]:
     """Connect to a scheduler, or start a local cluster of so many workers for ``local``.
 
     Raises
@@ -89,7 +89,7 @@ def on_dask(address: str, workers: int | None = None, patience: float = PATIENCE
     InputError
         If Dask is not installed, the scheduler does not answer, has no workers, or they differ from this program.
     """
-    distributed = _engine()
+    distributed, patience = _engine(), PATIENCE if patience is None else patience
     logging.getLogger("distributed").setLevel(logging.CRITICAL)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -171,8 +171,12 @@ def versions() -> dict[str, str]:
     }
 
 
+def _here() -> dict[str, str]:
+    return versions()
+
+
 def _require_same(client: Any) -> None:
-    here = versions()
+    here = _here()
     try:
         there: dict[str, dict[str, str]] = client.run(versions)
     except Exception as error:

@@ -36,7 +36,9 @@ def ordered(scenarios: Scenarios, ids: IntArray) -> tuple[IntArray, IntArray, In
     apart = scenarios.groups(ids, ("analysis", "output"))
     structure = scenarios.groups(ids, ("structure",))
     train = scenarios.groups(ids, ("train",))
-    order = np.lexsort((ids, train, structure, apart))
+    # side by side go scenarios that last about as long: what ends early makes the others begin anew
+    speed = scenarios.amounts(ids, "crossing.speed")
+    order = np.lexsort((ids, train, speed, structure, apart))
     return ids[order], apart[order], structure[order]
 
 

@@ -20,6 +20,8 @@ FloatArray = npt.NDArray[np.float64]
 # Frequencies of a structure and orders i that are looked at.
 _FREQUENCIES: Final = 3
 _ORDERS: Final = 5
+# Trains up to which resonances are looked for.
+_TRAINS: Final = 40
 # Distances that repeat in trains lie here [m]: coaches have 10 to 30 m.
 _SPACINGS: Final = (5.0, 35.0)
 
@@ -84,12 +86,12 @@ def resonances_of(study: Study, trains: Sequence[str], most: int) -> Mapping[str
     """
     scenarios = study._scenarios
     ids = np.arange(min(len(scenarios), 100_000), dtype=np.int64)
-    if len(np.unique(scenarios.groups(ids, ("structure",)))) > most or len(trains) > 100:
-        return {}
     _, first = np.unique(scenarios.groups(ids, ("train",)), return_index=True)
+    if len(np.unique(scenarios.groups(ids, ("structure",)))) > most or len(first) > _TRAINS:
+        return {}
     found: dict[str, Resonances] = {}
     frequencies: FloatArray | None = None
-    for number in first.tolist()[:100]:
+    for number in first.tolist():
         scenario = study.scenario(int(ids[number]))
         built = scenario.built
         if frequencies is None:

@@ -14,6 +14,7 @@ import numpy.typing as npt
 from axlespan.study.sweep.axes import Axis, Values
 from axlespan.study.sweep.spec import Spec
 
+FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 
@@ -80,6 +81,14 @@ class Scenarios:
             result = result * len(self.axes[k]) + chosen[:, k]
         return result
 
+    def amounts(self, ids: IntArray, path: str) -> FloatArray:
+        """Numbers (n,) that a path has, in the unit that its values are written in; zeros where it has none."""
+        for k, axis in enumerate(self.axes):
+            for part in axis.parts:
+                if part.path == path and (numbers := _amounts(part)) is not None:
+                    return numbers[self.numbers(ids)[:, k]]
+        return np.zeros(len(ids))
+
     def one_by_one(self, most: int) -> Iterator[tuple[int, int, int]]:
         """Scenarios that differ from the first in one axis: id, axis and number of its value.
 
@@ -98,9 +107,15 @@ def _spread(axis: Axis, most: int) -> list[int]:
         return list(range(len(axis)))
     chosen = set(np.linspace(0, len(axis) - 1, most).astype(int).tolist())
     for part in axis.parts:
-        try:
-            order = np.array([float(str(value).split()[0]) for value in part.values])
-        except ValueError:
-            continue
-        chosen |= {int(order.argmin()), int(order.argmax())}
+        numbers = _amounts(part)
+        if numbers is not None:
+            chosen |= {int(numbers.argmin()), int(numbers.argmax())}
     return sorted(chosen)
+
+
+def _amounts(part: Values) -> FloatArray | None:
+    """The numbers of values that are numbers, or numbers with a unit."""
+    try:
+        return np.array([float(str(value).split()[0]) for value in part.values])
+    except (ValueError, IndexError):
+        return None

@@ -149,11 +149,11 @@ class Store:
         import pyarrow as pa
         import pyarrow.parquet as pq
 
-        for part in (self.folder / TABLE).glob("*.parquet"):
+        for part in self._parts():
             try:
                 pq.read_metadata(part)
             except (pa.ArrowException, OSError):
-                part.rename(part.with_name(f".damaged-{part.name}"))
+                part.rename(part.with_name(f".damaged-{part.stem}"))
 
     # --- reading -------------------------------------------------------------------------------
 
@@ -161,11 +161,16 @@ class Store:
         """Ids of the scenarios that have a row (n,), ascending."""
         return np.sort(np.array(self._column("id"), dtype=np.int64))
 
+    def _parts(self) -> list[Path]:
+        """Parts of the table; names that begin with a point are of files that are not complete."""
+        found = (self.folder / TABLE).glob("*.parquet")
+        return sorted(part for part in found if not part.name.startswith("."))
+
     def _column(self, name: str) -> list[Any]:
         import pyarrow.parquet as pq
 
         values: list[Any] = []
-        for part in sorted((self.folder / TABLE).glob("*.parquet")):
+        for part in self._parts():
             values += pq.read_table(part, columns=[name], partitioning=None).column(name).to_pylist()
         return values
 
@@ -175,7 +180,7 @@ class Store:
         import pyarrow.parquet as pq
 
         wanted = [name for name in names if name in self.header.columns]
-        parts = sorted((self.folder / TABLE).glob("*.parquet"))
+        parts = self._parts()
         if not parts:
             return {name: np.empty(0) for name in wanted}
         read = [
@@ -199,7 +204,7 @@ class Store:
             raise InputError(
                 "is not installed", field="pandas", fix="pip install 'axlespan[study]'"
             ) from None
-        parts = sorted((self.folder / TABLE).glob("*.parquet"))
+        parts = self._parts()
         if not parts:
             return pd.DataFrame(columns=list(self.header.columns)).set_index("id")
         frame = pd.read_parquet(self.folder / TABLE)
@@ -267,7 +272,7 @@ class Store:
         import pyarrow.parquet as pq
 
         table, new, old = (self.folder / name for name in (TABLE, f"{TABLE}.new", f"{TABLE}.old"))
-        parts = sorted(table.glob("*.parquet"))
+        parts = self._parts()
         if len(parts) < 2:
             return
         whole = pa.concat_tables([pq.read_table(part, partitioning=None) for part in parts]).sort_by("id")

@@ -18,6 +18,7 @@ from axlespan.interaction.simulate import run_plan
 from axlespan.io.strict_json import to_json
 from axlespan.study.build import BuiltCase
 from axlespan.study.case import Case
+from axlespan.study.case_train import library_names
 from axlespan.study.faults import InputErrors
 from axlespan.study.source import Source
 from axlespan.study.sweep.answers import Answers
@@ -33,7 +34,6 @@ from axlespan.study.sweep.store import Header, Store
 from axlespan.study.sweep.validation import blamed, case_of, validate
 from axlespan.study.sweep.workshop import Done, Workshop
 from axlespan.study.yaml_tree import read_yaml
-from axlespan.vehicles import library
 
 if TYPE_CHECKING:
     import pandas
@@ -194,7 +194,7 @@ class Study:
         document = read_yaml(text, "study")
         try:
             self._take(
-                read_spec(Node(document.data, Source("study", text, document.root)), Path(), library.names())
+                read_spec(Node(document.data, Source("study", text, document.root)), Path(), library_names())
             )
         except InputError as error:
             raise InputErrors(_placeless(error)) from None
@@ -209,7 +209,7 @@ class Study:
             All that is wrong, with file, line and column.
         """
         study = cls.__new__(cls)
-        study._take(load_spec(path, library.names()))
+        study._take(load_spec(path, library_names()))
         return study
 
     def _take(self, spec: Spec) -> None:
@@ -263,14 +263,13 @@ class Study:
         InputError
             If one of them cannot be built, located where it can be told.
         """
-        try:
-            return try_out(self._recipe, self._scenarios, timed=timed)
-        except InputError as error:
-            raise self._located(error) from None
-
-    def _located(self, error: InputError) -> InputError:
-        """An error of building, at the value that varies if there is one with its field."""
-        return InputErrors(blamed(error, self._scenarios, self.spec.source, 0))
+        return try_out(
+            self._recipe,
+            self._scenarios,
+            lambda error, id: InputErrors(blamed(error, self._scenarios, self.spec.source, id)),
+            timed=timed,
+            forgiving=self.spec.sampling is not None,
+        )
 
     def estimate(self, *, workers: int = 1, free: float = 4e9) -> Estimate:
         """What it takes on so many workers, from a trial."""

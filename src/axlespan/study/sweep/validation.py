@@ -18,7 +18,6 @@ from axlespan.study.sweep.axes import Values
 from axlespan.study.sweep.recipe import Recipe
 from axlespan.study.sweep.scenarios import Scenarios
 from axlespan.study.yaml_tree import Written
-from axlespan.vehicles import library
 
 MOST: Final = 2000
 """Values of one axis that are validated; of a longer one its ends and others in between."""
@@ -32,11 +31,7 @@ def case_of(recipe: Recipe, data: Mapping[str, Any]) -> Case:
     InputErrors
         Located in the base.
     """
-    context: dict[str, Any] = {
-        "folder": Path(recipe.folder),
-        "vehicles": library.names(),
-        "spectra": spectrum_names(),
-    }
+    context: dict[str, Any] = {"folder": Path(recipe.folder), "spectra": spectrum_names()}
     try:
         return Case.model_validate(data, context=context)
     except ValidationError as error:
@@ -85,13 +80,16 @@ def blamed(error: InputError, scenarios: Scenarios, source: Source, number: int)
         if not within and not above:
             yield one
             continue
-        part, value = parts[(within or above)[0]]
+        named = [path for path in above if one.rule.startswith(f"{path.rpartition('.')[2]} = ")]
+        part, value = parts[(within or named or above)[0]]
         rest = field[len(part.path) :].strip(".") if within else ""
         yield _at_value(one, part, value, rest, source)
 
 
 def _at_value(error: InputError, part: Values, number: int, rest: str, source: Source) -> InputError:
-    path = part.place(number)
+    path, words = part.place(number), f"{part.path.rpartition('.')[2]} = "
+    if error.rule.startswith(words):  # an error of a layer below, which had no place in the base
+        error = InputError(error.rule.partition(": ")[2], fix=error.fix)
     rule = (
         f"{rest} {error.rule}"
         if rest.replace(".", "").isidentifier() and error.rule.startswith("is missing")

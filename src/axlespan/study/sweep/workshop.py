@@ -141,7 +141,7 @@ class Workshop:
         after, dt = self.recipe.passage or 0.0, case.analysis.time_step
 
         def steps(crossing: Crossing) -> int:
-            return max(1, math.ceil((passage(crossing) + after) / dt * (1.0 - 1e-12)))
+            return in_round_numbers(max(1, math.ceil((passage(crossing) + after) / dt * (1.0 - 1e-12))))
 
         return steps
 
@@ -234,7 +234,7 @@ def together(plan: Plan) -> Any:
     basis = s.basis if isinstance(s.basis, str) else id(s.basis)
     # bases that are refined until the worst of a group is good enough would depend on the group
     alone = id(plan) if s.coupling != "direct" or s.basis_tolerance is not None else None
-    footprint = s.footprint if basis != "full" else None  # the basis holds the shapes of its loads
+    footprint = (s.footprint, s.sleepers) if basis != "full" else None  # the basis holds the shapes of its loads
     structure = id(plan.crossing.structure)
     return (structure, s.time_step, s.method, s.coupling, s.solver, basis, s.basis_modes, footprint, alone)
 
@@ -263,6 +263,18 @@ def passage(crossing: Crossing) -> float:
 
         latest = max(latest, _root(left))
     return latest
+
+
+def in_round_numbers(steps: int) -> int:
+    """A number of steps, rounded up by at most an eighth, so that scenarios side by side end together.
+
+    Examples
+    --------
+    >>> [in_round_numbers(n) for n in (7, 100, 1000, 1024, 1025)]
+    [7, 104, 1024, 1024, 1152]
+    """
+    unit = 1 << max(0, steps.bit_length() - 4)
+    return -(-steps // unit) * unit
 
 
 def _root(rising: Callable[[FloatArray], FloatArray]) -> float:

@@ -1,0 +1,40 @@
+"""A ballasted track over a 40 m bridge with 601 ballast springs that only push: the nonlinear run against the linear one."""
+
+from __future__ import annotations
+
+import axlespan as asp
+from axlespan.bridges.unilateral import with_unilateral_springs
+from benchmarks import track
+from benchmarks.timing import Row, in_turns
+
+_APPROACH = 267  # bays, so that 601 sleepers are there
+_STEPS = 1000
+
+
+def run(runs: int) -> list[Row]:
+    """Linear ballast, unilateral ballast, and four hanging sleepers; then laws of contact on the linear one."""
+    linear = track.bridge(approach=_APPROACH)
+    unilateral = with_unilateral_springs(linear, "ballast")
+    middle = (_APPROACH + 20) * track.BAY
+    hanging = [(middle + i * track.BAY, 1e-3) for i in range(4)]
+    loose = with_unilateral_springs(linear, "ballast", hanging=hanging)
+    train = track.train() if hasattr(track, "train") else asp.Train.of(track.car(), 4, 24.775)
+
+    def work(structure: asp.Structure, contact: str = "rigid") -> dict[str, float | str]:
+        crossing = asp.Crossing(structure, train, speed=track.SPEED, start=track.START)
+        result = asp.simulate(
+            crossing, time_step=track.TIME_STEP, steps=_STEPS, contact=contact, reactions=False
+        )
+        facts = {"us/step": 1e6 * float(result.facts["wall_time"]) / _STEPS}
+        names = ("nonlinear_springs", "nonlinear_springs_active", "newton_iterations_largest")
+        return facts | {name: float(result.facts[name]) for name in names if name in result.facts}
+
+    alternatives = {
+        "linear": lambda: work(linear),
+        "601 unilateral springs": lambda: work(unilateral),
+        "four of them hang": lambda: work(loose),
+        "contact: hertz": lambda: work(linear, "hertz"),
+        "contact: unilateral": lambda: work(linear, "unilateral"),
+        "hertz, hanging": lambda: work(loose, "hertz"),
+    }
+    return in_turns("nonlinear ballasted bridge", alternatives, runs)

@@ -1,0 +1,76 @@
+"""Sweeps: ten HSLM trains, or one train of full vehicles over track, at 57 speeds; side by side and singly."""
+
+from __future__ import annotations
+
+import tempfile
+import time
+from pathlib import Path
+
+from axlespan.interaction.simulate import run_plan
+from axlespan.study.sweep import Study
+from benchmarks.timing import Row, in_turns
+
+SPEEDS = {"from": "140 km/h", "to": "420 km/h", "step": "5 km/h"}
+# Scenarios that are run singly: every so many of the study.
+EVERY = 19
+
+BRIDGE = {
+    "kind": "simple-span",
+    "length": "40 m",
+    "youngs_modulus": "34 GPa",
+    "second_moment": "3.2 m^4",
+    "mass_per_length": "18 t/m",
+    "elements": 20,
+    "damping": {"kind": "rayleigh", "ratio": "1 %", "frequencies": ["3 Hz", "27 Hz"]},
+}
+
+
+def hslm() -> Study:
+    """Ten trains of axle loads × 57 speeds on a span of 40 m."""
+    base = {
+        "structure": BRIDGE,
+        "train": [],
+        "crossing": {"speed": "200 km/h"},
+        "analysis": {"time_step": "2 ms"},
+        "output": {"sensors": {"midspan": "20 m"}, "reactions": False},
+    }
+    return Study(base, {"train": "hslm-a", "crossing.speed": SPEEDS}, passage={"after": "1 s"})
+
+
+def vehicles() -> Study:
+    """A train of full vehicles × 57 speeds on the same span with ballasted track."""
+    base = {
+        "structure": {**BRIDGE, "track": {"kind": "ballasted", "preset": "zhai-2004"}},
+        "train": [{"vehicle": "ice3", "count": 1}],
+        "crossing": {"speed": "200 km/h", "start": "0 m"},
+        "analysis": {"time_step": "2 ms"},
+        "output": {"sensors": {"midspan": "20 m"}, "reactions": False},
+    }
+    return Study(base, {"crossing.speed": SPEEDS}, passage={"after": "1 s"})
+
+
+def measured(study: Study, every: int = EVERY) -> dict[str, float | str]:
+    """Processor time for each scenario: all of them in a sweep, and some of them singly."""
+    begun = time.process_time()
+    with tempfile.TemporaryDirectory() as folder:
+        study.run(Path(folder) / "store")
+    together = (time.process_time() - begun) / len(study.scenarios)
+    steps = sum(scenario.built.plan.settings.steps for scenario in study.scenarios)
+    begun, some = time.process_time(), range(0, len(study.scenarios), every)
+    for number in some:
+        run_plan(study.scenario(number).built.plan)
+    alone = (time.process_time() - begun) / len(some)
+    return {
+        "scenarios": float(len(study.scenarios)),
+        "s/scenario": together,
+        "us/scenario-step": 1e6 * together * len(study.scenarios) / steps,
+        "singly s/scenario": alone,
+        "singly/sweep": alone / together,
+    }
+
+
+def run(runs: int) -> list[Row]:
+    """Both studies; the ratio of singly to the sweep stands in the facts."""
+    first = in_turns("10 HSLM x 57 speeds, 40 m", {"sweep": lambda: measured(hslm())}, runs)
+    second = in_turns("ICE 3 x 57 speeds, 40 m, track", {"sweep": lambda: measured(vehicles())}, runs)
+    return [*first, *second]

@@ -1,0 +1,162 @@
+"""Sweeps on a real Dask scheduler, with workers in processes of their own on this machine."""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+
+import pytest
+
+from axlespan.errors import InputError
+from axlespan.study.sweep import Study, on_dask, store
+from tests.study.sweep.conftest import numbers_differ
+
+pytest.importorskip("distributed")
+pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore")]
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+class Cluster:
+    """A scheduler and its workers, each a process that can be killed."""
+
+    def __init__(self):
+        self.port = free_port()
+        self.address = f"tcp://127.0.0.1:{self.port}"
+        self.processes = []
+
+    def begin(self, *arguments):
+        command = [sys.executable, "-m", "distributed.cli." + arguments[0], *arguments[1:]]
+        environment = {**os.environ, "OMP_NUM_THREADS": "1"}
+        process = subprocess.Popen(
+            command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=environment, start_new_session=True
+        )
+        self.processes.append(process)
+        return process
+
+    def scheduler(self):
+        more = ("--no-dashboard", "--host", "127.0.0.1", "--port", str(self.port))
+        return self.begin("dask_scheduler", *more)
+
+    def worker(self):
+        return self.begin(
+            "dask_worker", self.address, "--nthreads", "1", "--no-nanny", "--no-dashboard", "--host", "127.0.0.1"
+        )
+
+    def end(self):
+        for process in self.processes:
+            process.kill()
+            process.wait(20)
+
+
+@pytest.fixture
+def cluster():
+    own = Cluster()
+    yield own
+    own.end()
+
+
+@pytest.fixture
+def study(study_file):
+    return Study.load(study_file())
+
+
+@pytest.fixture
+def small_tasks(monkeypatch):
+    monkeypatch.setattr(store, "_SECONDS", 0.0)
+    monkeypatch.setattr("axlespan.study.sweep.study.lanes_for", lambda scenarios, workers, most: 2)
+
+
+def test_the_same_numbers_on_two_workers(study, cluster, tmp_path):
+    cluster.scheduler()
+    cluster.worker()
+    cluster.worker()
+    study.run(tmp_path / "here")
+    reference = study.table()
+    seen = []
+    outcome = study.run(
+        tmp_path / "there", scheduler=cluster.address, progress=lambda *numbers: seen.append(numbers)
+    )
+    assert outcome.missing == 0 and seen[-1] == (24, 0, 24)
+    assert numbers_differ(reference, study.table()) < 1e-10
+
+
+def test_a_worker_that_is_killed(study, cluster, tmp_path, small_tasks):
+    cluster.scheduler()
+    doomed = cluster.worker()
+    cluster.worker()
+    study.run(tmp_path / "here")
+    reference = study.table()
+
+    def kill(done, failed, total):
+        if doomed.poll() is None:
+            doomed.send_signal(signal.SIGKILL)
+
+    outcome = study.run(tmp_path / "there", scheduler=cluster.address, progress=kill)
+    assert doomed.poll() is not None
+    if outcome.missing:  # what was on that worker when it died
+        outcome = study.run(tmp_path / "there", resume=True)
+    assert outcome.missing == 0
+    assert numbers_differ(reference, study.table()) < 1e-10
+
+
+def test_a_scheduler_that_is_killed_and_a_run_that_goes_on_without(study, cluster, tmp_path, small_tasks):
+    scheduler = cluster.scheduler()
+    cluster.worker()
+    study.run(tmp_path / "here")
+    reference = study.table()
+
+    def kill(done, failed, total):
+        if done >= 6 and scheduler.poll() is None:
+            scheduler.send_signal(signal.SIGKILL)
+
+    outcome = study.run(tmp_path / "there", scheduler=cluster.address, progress=kill)
+    assert 0 < outcome.missing < 24
+    assert "the scheduler is gone" in outcome.reasons
+    kept = len(study.table())
+    assert kept == 24 - outcome.missing
+    assert study.run(tmp_path / "there", resume=True).computed == outcome.missing
+    assert numbers_differ(reference, study.table()) < 1e-10
+
+
+def test_a_scheduler_that_does_not_answer(study, tmp_path, monkeypatch):
+    address = f"tcp://127.0.0.1:{free_port()}"
+    monkeypatch.setattr(on_dask, "PATIENCE", 1.0)
+    with pytest.raises(InputError, match=rf"scheduler = '{address}': does not answer; tried for [12] s"):
+        study.run(tmp_path / "out", scheduler=address)
+    assert not (tmp_path / "out").exists()
+    with pytest.raises(InputError, match="is no address of a scheduler"):
+        study.run(tmp_path / "out", scheduler="nonsense://x:1")
+
+
+def test_a_scheduler_without_workers(study, cluster, tmp_path, monkeypatch):
+    cluster.scheduler()
+    time.sleep(2.0)
+    monkeypatch.setattr(on_dask, "PATIENCE", 3.0)
+    with pytest.raises(InputError, match=r"has no workers; waited 3 s for one. Start some with: dask worker tcp://"):
+        study.run(tmp_path / "out", scheduler=cluster.address)
+
+
+def test_workers_with_other_versions(study, cluster, tmp_path, monkeypatch):
+    cluster.scheduler()
+    cluster.worker()
+    there = on_dask.versions()
+    monkeypatch.setattr(on_dask, "_here", lambda: {**there, "axlespan": "9.9"})
+    with pytest.raises(InputError, match=r"has a worker with other versions: tcp://.* has axlespan .* \(here 9.9\)"):
+        study.run(tmp_path / "out", scheduler=cluster.address)
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_local_cluster(study, tmp_path):
+    small = Study.load(study.spec.source.file)
+    assert small.run(tmp_path / "out", workers=2, scheduler="local").missing == 0
+    assert threading.active_count() < 50
+
+
