@@ -5,10 +5,16 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from benchmarks import beams, growth, solid, track
+from benchmarks import beams, growth, nonlinear, solid, track
 from benchmarks.timing import report
 
-BENCHMARKS = {"beams": beams.run, "track": track.run, "growth": growth.run, "solid": solid.run}
+BENCHMARKS = {
+    "beams": beams.run,
+    "track": track.run,
+    "growth": growth.run,
+    "solid": solid.run,
+    "nonlinear": nonlinear.run,
+}
 
 
 def main() -> None:

@@ -8,10 +8,10 @@ from benchmarks import track
 from benchmarks.timing import Row, in_turns
 
 _APPROACH = 267  # bays, so that 601 sleepers are there
-_STEPS = 1000
+_STEPS, _SHORT = 1000, 200
 
 
-def run(runs: int) -> list[Row]:
+def run(runs: int, quick: bool = False) -> list[Row]:
     """Linear ballast, unilateral ballast, and four hanging sleepers; then laws of contact on the linear one."""
     linear = track.bridge(approach=_APPROACH)
     unilateral = with_unilateral_springs(linear, "ballast")
@@ -20,12 +20,14 @@ def run(runs: int) -> list[Row]:
     loose = with_unilateral_springs(linear, "ballast", hanging=hanging)
     train = track.train() if hasattr(track, "train") else asp.Train.of(track.car(), 4, 24.775)
 
+    steps = _SHORT if quick else _STEPS
+
     def work(structure: asp.Structure, contact: str = "rigid") -> dict[str, float | str]:
         crossing = asp.Crossing(structure, train, speed=track.SPEED, start=track.START)
         result = asp.simulate(
-            crossing, time_step=track.TIME_STEP, steps=_STEPS, contact=contact, reactions=False
+            crossing, time_step=track.TIME_STEP, steps=steps, contact=contact, reactions=False
         )
-        facts = {"us/step": 1e6 * float(result.facts["wall_time"]) / _STEPS}
+        facts = {"us/step": 1e6 * float(result.facts["wall_time"]) / steps}
         names = ("nonlinear_springs", "nonlinear_springs_active", "newton_iterations_largest")
         return facts | {name: float(result.facts[name]) for name in names if name in result.facts}
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import inspect
 from importlib import import_module
 from pathlib import Path
@@ -17,10 +18,13 @@ Everything public. `import axlespan as asp` gives the names of the first section
 ROOMS = {
     "bridges": "Bridges and track",
     "vehicles": "Vehicles and trains",
+    "vehicles.library": "Library of vehicles",
+    "vehicles.load_trains": "Load trains",
     "irregularity": "Irregularities",
     "plot": "Figures",
     "standards": "Rules",
-    "study": "Case files and studies",
+    "study": "Case files",
+    "study.sweep": "Studies",
     "report": "Reports",
 }
 
@@ -57,7 +61,16 @@ def _entries(module: str, names: list[str]) -> list[str]:
         elif callable(thing):
             kind, options = "autofunction", []
         else:
-            kind, options = "autodata", [":no-value:"]
+            lines += [
+                "```{eval-rst}",
+                f".. data:: {module}.{name}",
+                f"   :type: {type(thing).__name__}",
+                "",
+                f"   {data_told(module, name)}",
+                "```",
+                "",
+            ]
+            continue
         lines += [
             "```{eval-rst}",
             f".. {kind}:: {module}.{name}",
@@ -66,3 +79,27 @@ def _entries(module: str, names: list[str]) -> list[str]:
             "",
         ]
     return lines
+
+
+def data_told(module: str, name: str) -> str:
+    """Return what the comment before public data says, and what it holds."""
+    thing = getattr(import_module(module), name)
+    source = _home(module, name)
+    lines = Path(str(import_module(source).__file__)).read_text(encoding="utf-8").splitlines()
+    (at,) = [i for i, line in enumerate(lines) if line.startswith((f"{name}:", f"{name} ="))]
+    said: list[str] = []
+    while at and lines[at - 1].startswith("#"):
+        at -= 1
+        said.insert(0, lines[at].lstrip("#: "))
+    if isinstance(thing, str):
+        return f"{' '.join(said)} ``{thing}``"
+    return f"{' '.join(said)} They are {', '.join(f'``{word}``' for word in thing)}."
+
+
+def _home(module: str, name: str) -> str:
+    """Return the module that public data is written in, from the imports of its room."""
+    tree = ast.parse(Path(str(import_module(module).__file__)).read_text(encoding="utf-8"))
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and any(alias.name == name for alias in node.names):
+            return str(node.module)
+    return module

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import field_comments
 import made_api
 import made_book
 import made_case_file
@@ -34,4 +35,5 @@ def write(app: Sphinx) -> None:
 def setup(app: Sphinx) -> dict[str, bool]:
     """Write the pages before sources are looked for."""
     app.connect("builder-inited", write)
+    app.connect("autodoc-process-docstring", field_comments.tell, priority=100)  # before napoleon reads it
     return {"parallel_read_safe": True}

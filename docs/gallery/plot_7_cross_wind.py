@@ -14,7 +14,9 @@ track = asp.bridges.ballasted_track("zhai-2004", rail="60E1")
 ground = asp.bridges.track_on_ground(track, 160 * track.spacing, space=True)
 car = asp.vehicles.library.vehicle("ice-3d-motor")
 wind = asp.vehicles.BodyLoad("body", y=-60e3, height=2.4)
-rough = asp.irregularity.realize(asp.irregularity.spectrum("german-low"), 300.0, seed=4, wavelengths=(3.0, 70.0))
+rough = asp.irregularity.realize(
+    asp.irregularity.spectrum("german-low"), 300.0, seed=4, wavelengths=(3.0, 70.0)
+)
 
 figure, axes = plt.subplots(figsize=(7.2, 3.6), layout="constrained")
 for vehicle, style, label in ((car, "--", "still air"), (car.loaded([wind]), "-", "wind of 60 kN")):

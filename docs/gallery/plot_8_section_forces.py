@@ -16,7 +16,7 @@ bridge = asp.bridges.continuous_beam(
     elements=24,
     damping=asp.Rayleigh.from_ratio(0.01, (4.0, 16.0)),
 )
-train = asp.vehicles.load_trains.train("en15528-d4", count=5)
+train = asp.vehicles.load_trains.en15528("d4", count=5)
 crossing = asp.Crossing(bridge, train, speed=100 / 3.6)
 asp.plot.elevation(crossing)
 

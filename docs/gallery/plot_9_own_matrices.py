@@ -8,9 +8,9 @@ program writes; between the points the line of the wheels is linear. Beside it t
 
 import numpy as np
 import scipy.sparse as sp
-from axlespan.running.path import PolynomialPath
 
 import axlespan as asp
+from axlespan.running.path import PolynomialPath
 
 length, stiffness, mass, n = 25.0, 2.87e9 * 2.90, 2303.0, 99  # [m], EI [N m^2], [kg/m], inner points
 h = length / (n + 1)

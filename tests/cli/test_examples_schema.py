@@ -9,7 +9,7 @@ import pytest
 from ruamel.yaml import YAML
 
 import axlespan as package
-from axlespan.cli.examples import shipped
+from axlespan.cli.examples import everything, shipped, studies
 from axlespan.study import load_case, schema
 
 NAMES = ["neves2012-3.1", "neves2012-3.2", "three-spans", "wheels-with-mass"]
@@ -22,7 +22,7 @@ class TestExamples:
         *listed, empty, hint = answer.out.splitlines()
         titles = dict(line.split(maxsplit=1) for line in listed)
         assert set(NAMES) <= set(titles)
-        assert list(titles) == sorted(titles) == list(shipped())
+        assert list(titles) == sorted(titles) == list(everything())
         assert titles["neves2012-3.1"] == "Neves et al. (2012), example 3.1"
         assert (empty, hint) == (
             "",
@@ -44,12 +44,21 @@ class TestExamples:
             == dict(line.split(maxsplit=1) for line in axlespan("examples").out.splitlines()[:-2])[name]
         )
 
+    @pytest.mark.parametrize("name", list(studies()))
+    def test_each_study_says_what_it_is_and_is_valid(self, axlespan, tmp_path, name):
+        assert axlespan("examples", name, "-o", tmp_path).code == 0
+        text = (tmp_path / f"{name}.yaml").read_text(encoding="utf-8")
+        assert text.startswith("# ")
+        study = package.Study.load(tmp_path / f"{name}.yaml")
+        assert len(study.scenarios) > 1
+        assert not study.trial(timed=False).cautions
+
     def test_several_and_all(self, axlespan, tmp_path):
         answer = axlespan("examples", "three-spans.yaml", "neves2012-3.1", "three-spans", "-o", tmp_path)
         assert answer.code == 0
         assert answer.out.splitlines() == [f"{tmp_path}/three-spans.yaml", f"{tmp_path}/neves2012-3.1.yaml"]
         answer = axlespan("examples", "all", "-o", tmp_path / "all")
-        assert {path.stem for path in (tmp_path / "all").glob("*.yaml")} == set(shipped())
+        assert {path.stem for path in (tmp_path / "all").glob("*.yaml")} == set(everything())
         copied = [str(path) for path in (tmp_path / "all").rglob("*") if path.is_file()]
         assert sorted(answer.out.splitlines()) == sorted(copied)
 

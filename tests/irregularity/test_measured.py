@@ -198,3 +198,10 @@ print("scipy" in sys.modules)"""
     assert all(hasattr(ir, name) for name in ir.__all__)
     with pytest.raises(AttributeError, match="no attribute 'Mesurement'"):
         _ = ir.Mesurement
+
+
+def test_the_unit_of_the_header_holds_unless_a_scale_is_given(tmp_path):
+    path = tmp_path / "m.csv"
+    path.write_text("x [m];level [mm]\n10;1,5\n10,5;2,5\n11;-1\n")
+    for scale in (None, 1e-3):
+        np.testing.assert_allclose(ir.Measurement.from_csv(path, scale=scale).values, [1.5e-3, 2.5e-3, -1e-3])

@@ -92,3 +92,33 @@ def test_bad_files_are_named_by_line(tmp_path, text, columns, message):
 def test_missing_file_is_an_input_error(tmp_path):
     with pytest.raises(InputError, match="cannot be read: No such file"):
         ir.Table.from_csv(tmp_path / "absent.csv")
+
+
+@pytest.mark.parametrize(
+    ("text", "x", "r"),
+    [
+        ("x [m]; r [mm]\n0; 0\n1; 1,5\n2; 0\n", [0.0, 1.0, 2.0], [0.0, 1.5e-3, 0.0]),
+        ("chainage [km],height (mm)\n0.5,0\n0.6,2\n", [500.0, 600.0], [0.0, 2e-3]),
+        ("x [m] r [mm]\n0 0\n1 1.5\n", [0.0, 1.0], [0.0, 1.5e-3]),
+        ("x;r (smoothed)\n0;0\n1;0.001\n", [0.0, 1.0], [0.0, 1e-3]),
+    ],
+)
+def test_units_of_the_header_hold(tmp_path, text, x, r):
+    path = tmp_path / "profile.csv"
+    path.write_text(text)
+    table = ir.Table.from_csv(path)
+    np.testing.assert_allclose(table.x, x, rtol=1e-14)
+    np.testing.assert_allclose(table.r, r, rtol=1e-14)
+
+
+def test_columns_are_found_without_their_units(tmp_path):
+    path = tmp_path / "profile.csv"
+    path.write_text("km [km];x [m];left [mm];right [mm]\n0;0;1;2\n0;1;3;4\n")
+    np.testing.assert_allclose(ir.Table.from_csv(path, columns=("x", "right")).r, [2e-3, 4e-3])
+
+
+def test_a_unit_that_is_no_length_is_refused(tmp_path):
+    path = tmp_path / "p.csv"
+    path.write_text("x [m]; r [kN]\n0; 0\n1; 1\n")
+    with pytest.raises(InputError, match=r"p\.csv:1: r \[kN\]: must be a length; 'kN' is a force"):
+        ir.Table.from_csv(path)

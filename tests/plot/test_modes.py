@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from matplotlib import pyplot as plt
 
 import axlespan as asp
 from axlespan.model.compile import compile_model
@@ -20,9 +21,10 @@ def test_shapes_along_the_line():
         length=20.0, youngs_modulus=3e10, second_moment=0.1, mass_per_length=4e3, elements=24
     )
     modes = modes_of(bridge.system, 24).modes
-    (ax,) = figures.line_shapes(bridge, modes).axes
+    ax = figures.line_shapes(bridge, modes)
     curves = [line for line in ax.lines if len(line.get_xdata()) > 2]
     assert len(curves) == 20  # not more fit
+    plt.close("all")
     labels = [text.get_text() for text in ax.get_yticklabels()]
     assert labels[0] == f"1:  {np.pi / 2 / 400 * np.sqrt(3e9 / 4e3):.4g} Hz"
     for n in (1, 2, 3):
@@ -48,15 +50,15 @@ def solid_beam():
 def test_shape_in_space():
     structure = solid_beam()
     modes = modes_of(structure.system, 3).modes
-    figure = figures.space_shape(structure, modes, 0)
-    (ax,) = figure.axes
+    ax = figures.space_shape(structure, modes, 0)
     _, bent = ax.collections
     amounts = bent.get_array()
     # 13 cross-sections of 4 edges and 12 × 4 edges along; the free end moves most, the clamped one not at all
     assert len(amounts) == 13 * 4 + 12 * 4
     assert 0.99 < amounts.max() <= 1.0 and amounts.min() == pytest.approx(0.0, abs=1e-12)
     assert ax.get_title() == f"Mode 1: {modes.frequencies[0]:.4g} Hz"
-    figure.draw_without_rendering()
+    ax.figure.draw_without_rendering()
+    plt.close("all")
 
 
 def test_what_cannot_be_drawn(monkeypatch):

@@ -6,6 +6,7 @@ import pytest
 from axlespan.errors import InputError
 from axlespan.study.case_train import KINDS
 from axlespan.vehicles import library, load_trains, sprung_mass
+from axlespan.vehicles.library import trains
 from axlespan.vehicles.mode_words import vehicle_modes
 
 G = 9.81
@@ -179,6 +180,27 @@ class TestOwnFiles:
         assert [group.count for group in entry.groups] == [1, 2, 1]
         assert entry.pitch == pytest.approx(18.95 + 3 * 12.0)
 
+    @pytest.mark.parametrize("loco_first", [True, False])
+    def test_different_vehicles_stand_buffer_to_buffer(self, wagon, tmp_path, loco_first):
+        """Of the locomotive 3 m are ahead of its first wheel, of the wagon 1 m: 18.95 and 12 m over buffers."""
+        wagon(("pitch: 12 m", "pitch: 12 m\nlength: 12 m\noverhang: 1 m"))
+        names = ["{vehicle: traxx}", "{vehicle: wagon.yaml, count: 2}"]
+        path = tmp_path / "train.yaml"
+        path.write_text(f"title: F\nvehicles: [{', '.join(names if loco_first else names[::-1])}]\n")
+        entry = library.load(path)
+        train = trains.train_of(entry)
+        train.require_apart()
+        fronts = [item.behind - item.vehicle.front_overhang for item in train.placements]
+        lengths = [18.95, 12.0] if loco_first else [12.0, 12.0]
+        np.testing.assert_allclose(np.diff(fronts), lengths)
+        assert entry.pitch == pytest.approx(18.95 + 2 * 12.0)
+
+    def test_a_spacing_that_is_given_holds(self, wagon, tmp_path):
+        wagon(("pitch: 12 m", "pitch: 12 m\nlength: 12 m\noverhang: 1 m"))
+        path = tmp_path / "train.yaml"
+        path.write_text("title: F\nvehicles: [{vehicle: traxx, spacing: 20 m}, {vehicle: wagon.yaml}]\n")
+        assert trains.train_of(library.load(path)).placements[1].behind == 20.0
+
     def test_loads_in_the_file(self, wagon):
         still, loaded = (
             library.load(wagon(*edits)).model
@@ -216,6 +238,10 @@ class TestOwnFiles:
             ("note: slender", "note: slender, long", r"Put a text that has a comma in quotes"),
             ("positions: [0 m, 9 m]", "positions: [1 m, 9 m]", "must have its first wheel at 0"),
             ("[[body, wheel1], [body, wheel2]]", "[body]", "must be two names, or a list of such pairs"),
+            ("pitch: 12 m", "length: 8 m", r"wagon\.yaml:6:9: length = '8 m': must be at least 9 m"),
+            ("pitch: 12 m", "length: 12 m\noverhang: 5 m", r"wagon\.yaml:7:11: overhang = '5 m': must be between 0 and 3 m"),
+            ("pitch: 12 m", "overhang: 1 m", r"wagon\.yaml:6:11: overhang = '1 m': needs a length"),
+            ("pitch: 12 m", "stated: {axle_loads: 160 kN, tolerance: -1 %}", "tolerance = '-1 %': must be positive"),
             ("pitch: 12 m", "notes: &n [*n]", "is nested too deeply|found undefined alias"),
             ("pitch: 12 m", "<<: 3", r"wagon\.yaml:6:1: <<: must be followed by one alias of a mapping"),
             ("title: My wagon", "title: [", r"wagon\.yaml:2:1: is no YAML|wagon\.yaml:\d+:\d+: is no YAML"),
@@ -234,8 +260,11 @@ class TestOwnFiles:
         with pytest.raises(InputError, match=r"none\.yaml: no such file"):
             library.load(tmp_path / "none.yaml")
         path = tmp_path / "train.yaml"
+        path.write_text("title: T\nvehicles: [{vehicle: nobody.yaml}]\n")
+        with pytest.raises(InputError, match=r"train\.yaml:2:22: .*'nobody\.yaml': no such file"):
+            library.load(path)
         path.write_text("title: T\nvehicles: [{vehicle: train.yaml}]\n")
-        with pytest.raises(InputError, match="is a train that names itself"):
+        with pytest.raises(InputError, match=r"train\.yaml:2:22: .* is a train that names itself"):
             library.load(path)
         path.write_text("title: T\nvehicles: [{vehicle: icee3}]\n")
         with pytest.raises(

@@ -10,6 +10,7 @@ from axlespan.bridges.track import Layer, Track, Zone
 from axlespan.bridges.track_builders import ballasted_track, slab_track
 from axlespan.bridges.track_layout import least_approach, usual_approach
 from axlespan.bridges.track_presets import PRESETS, TrackPreset
+from axlespan.bridges.unilateral import with_unilateral_springs
 from axlespan.bridges.with_track import track_on_ground, with_track
 
 __all__ = [
@@ -35,4 +36,5 @@ __all__ = [
     "track_on_ground",
     "usual_approach",
     "with_track",
+    "with_unilateral_springs",
 ]

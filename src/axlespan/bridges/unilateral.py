@@ -68,16 +68,14 @@ def with_unilateral_springs(
         dofs[turned] = dofs[turned, ::-1]
         places = model.points[part.nodes[:, 1], 0]
         gaps = _gaps(places, hanging)
-        pairs = np.column_stack([part.stiffness[:, at], part.damping[:, at]])
-        for k, c in np.unique(pairs[pairs[:, 0] > 0.0], axis=0):
-            own = np.flatnonzero((pairs == (k, c)).all(axis=1))
-            n = len(own)
-            unit = sp.coo_array(
-                (np.tile([-1.0, 1.0], n), (np.repeat(np.arange(n), 2), dofs[own].ravel())), (n, table.size)
-            )
-            elongation = sp.csr_array(sp.csr_array(unit) @ elimination)
-            law = UnilateralSpring(float(k), float(c))
-            rows.append(SpringRows(group, law, elongation, gaps[own], law.stiffness, law.damping))
+        own = np.flatnonzero(part.stiffness[:, at] > 0.0)
+        n = len(own)
+        unit = sp.coo_array(
+            (np.tile([-1.0, 1.0], n), (np.repeat(np.arange(n), 2), dofs[own].ravel())), (n, table.size)
+        )
+        elongation = sp.csr_array(sp.csr_array(unit) @ elimination)
+        law = UnilateralSpring(part.stiffness[own, at], part.damping[own, at])
+        rows.append(SpringRows(group, law, elongation, gaps[own], law.stiffness, law.damping))
     system = replace(structure.system, nonlinear=(*structure.system.nonlinear, *rows))
     return replace(structure, system=system)
 
@@ -96,7 +94,8 @@ def _gaps(places: FloatArray, hanging: Sequence[tuple[float, float]]) -> FloatAr
                 field=f"hanging_sleepers.{number}.at",
                 value=position,
             )
-        nearest_one = np.flatnonzero(np.abs(places - position) == np.abs(places - position).min())
+        place = places[int(np.argmin(np.abs(places - position)))]
+        nearest_one = np.flatnonzero(np.abs(places - place) < 1e-9)
         if np.any(gaps[nearest_one] > 0.0):
             raise InputError("names a sleeper twice", field=f"hanging_sleepers.{number}.at", value=position)
         gaps[nearest_one] = gap

@@ -11,8 +11,21 @@ from axlespan.errors import InputError, Place
 from axlespan.model.dofs import nearest
 
 
+_STUDY = "study-"  # beginning of the names of studies
+
+
 def shipped() -> dict[str, str]:
     """Texts of the shipped cases by name."""
+    return {name: text for name, text in everything().items() if not name.startswith(_STUDY)}
+
+
+def studies() -> dict[str, str]:
+    """Texts of the shipped studies by name."""
+    return {name: text for name, text in everything().items() if name.startswith(_STUDY)}
+
+
+def everything() -> dict[str, str]:
+    """Texts of all shipped cases and studies by name."""
     folder = files("axlespan") / "examples"
     cases = (entry for entry in folder.iterdir() if entry.name.endswith(".yaml"))
     return {
@@ -23,7 +36,7 @@ def shipped() -> dict[str, str]:
 
 def list_or_copy(names: list[str], output: Path, *, force: bool) -> int:
     """List the cases, or copy some of them; the exit code."""
-    cases = shipped()
+    cases = everything()
     if not names:
         for name, text in cases.items():
             say(f"{name:22} {_title(text)}")

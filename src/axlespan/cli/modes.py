@@ -134,17 +134,20 @@ def _write(structure: Structure, found: SystemModes, title: str, folder: Path) -
     """Write modes.json, figures, and shapes for ParaView where there is a model."""
     from axlespan.plot.modes import line_shapes, space_shape
     from axlespan.plot.standard import save
+    from axlespan.plot.style import figure_of
 
     folder.mkdir(parents=True, exist_ok=True)
     text = to_json(modes_content(structure, found, title), indent=2)
     (folder / "modes.json").write_text(text + "\n", encoding="utf-8")
-    figures = {"modes": line_shapes(structure, found.modes)}
+    figures = {"modes": figure_of(line_shapes(structure, found.modes))}
     if structure.model is not None:
         write_modes(structure, found.modes, folder / "modes.vtu")
         if np.ptp(structure.model.points[:, 1]) > 0.0:
             try:
                 for i in range(min(len(found.modes), _PICTURES)):
-                    figures[f"mode-{i + 1:02d}"] = space_shape(structure, found.modes, i)
+                    figures[f"mode-{i + 1:02d}"] = space_shape(structure, found.modes, i).get_figure(
+                        root=True
+                    )
             except InputError as error:
                 warn(f"no figures in space: {error}")
     pictures = [file.name for file in save(figures, folder)]

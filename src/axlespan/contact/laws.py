@@ -230,10 +230,10 @@ class LinearSpring:
         return np.asarray(0.5 * self.k * pressed**2)
 
 
-#: Laws by their words, with what they are when nothing else is said.
-LAWS: Final = {"rigid": Rigid(), "unilateral": Unilateral(), "hertz": Hertz(), "linear-spring": LinearSpring()}
-
 Law = Rigid | Unilateral | CompliantLaw
+
+#: Laws by their words, with what they are when nothing else is said.
+LAWS: Final[dict[str, Law]] = {"rigid": Rigid(), "unilateral": Unilateral(), "hertz": Hertz(), "linear-spring": LinearSpring()}
 
 
 def law_of(word: object) -> Law:
@@ -251,7 +251,9 @@ def law_of(word: object) -> Law:
     """
     if isinstance(word, str) and word in LAWS:
         return LAWS[word]
-    if isinstance(word, (Rigid, Unilateral, CompliantLaw)) and not isinstance(word, str):
+    if isinstance(word, (Rigid, Unilateral)):
+        return word
+    if isinstance(word, CompliantLaw):
         return word
     raise InputError(
         f"must be one of {', '.join(LAWS)}, or a law of axlespan.contact.laws", field="contact", value=word

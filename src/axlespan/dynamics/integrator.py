@@ -287,7 +287,7 @@ class Stepper:
         """Displacements at flat positions (any shape) at the new time, as far as it is known."""
         values = self.state.values.reshape(3, -1)
         if self._done:
-            return values[0].take(where)
+            return np.asarray(values[0].take(where))
         _, dt, late, new = self._ahead_weights
         if self._read is not None:
             result = np.empty(where.shape)
@@ -299,13 +299,13 @@ class Stepper:
         result += late * values[2].take(where)
         result += values[0].take(where)
         result += new * self.acceleration.take(where)
-        return result
+        return np.asarray(result)
 
     def velocity(self, where: npt.NDArray[np.int64]) -> FloatArray:
         """Velocities at flat positions (any shape) at the new time, as far as they are known."""
         values = self.state.values.reshape(3, -1)
         if self._done:
-            return values[1].take(where)
+            return np.asarray(values[1].take(where))
         late, new = self._advance[1, 2:].tolist()
         return np.asarray(
             values[1].take(where) + late * values[2].take(where) + new * self.acceleration.take(where)

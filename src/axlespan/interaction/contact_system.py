@@ -220,8 +220,8 @@ def path_compliance(columns: PathColumns, local: IntArray, weights: FloatArray) 
         ends = np.arange(0, n * n_wheel * n_local + 1, n_local)
         E = sp.csr_array((w.ravel(), where.ravel(), ends), shape=(n * n_wheel, n_path))
         half = (E @ compliance).reshape(n, n_wheel, n_path)  # E Z
-        columns = np.broadcast_to(where.reshape(n, 1, -1), (n, n_wheel, n_wheel * n_local))
-        block = np.take_along_axis(half, columns, axis=2)
+        places = np.broadcast_to(where.reshape(n, 1, -1), (n, n_wheel, n_wheel * n_local))
+        block = np.take_along_axis(half, places, axis=2)
         block *= w.reshape(n, 1, -1)
         result[begin : begin + n] = block.reshape(n, n_wheel, n_wheel, n_local) @ ones
     return result

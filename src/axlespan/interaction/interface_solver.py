@@ -89,7 +89,7 @@ def solve_interface(
             break
         if size <= _ROUNDING * interface.scale:
             return Solution(forces, newton.coordinates(forces), residuals)
-        step = np.linalg.solve(jacobian, residual[..., None])[..., 0]
+        step = np.asarray(np.linalg.solve(jacobian, residual[..., None])[..., 0], dtype=np.float64)
         forces, residual, jacobian, now = newton.advance(forces, step, residual)
         same = held is None or now is None or np.array_equal(held, now)
         held = now

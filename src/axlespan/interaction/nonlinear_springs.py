@@ -107,12 +107,12 @@ class Springs:
     @cached_property
     def stiffness(self) -> FloatArray:
         """Reference stiffness (n,) [N/m]."""
-        return np.concatenate([np.full(len(g.gap), g.stiffness) for g in self.groups] or [np.zeros(0)])
+        return np.concatenate([np.broadcast_to(g.stiffness, g.gap.shape) for g in self.groups] or [np.zeros(0)])
 
     @cached_property
     def damping(self) -> FloatArray:
         """Reference damping (n,) [N s/m]."""
-        parts = [np.full(len(g.gap), g.damping) for g in self.groups]
+        parts = [np.broadcast_to(g.damping, g.gap.shape) for g in self.groups]
         return np.concatenate(parts or [np.zeros(0)])
 
     @cached_property

@@ -130,9 +130,9 @@ def _step(jacobian: FloatArray, residual: FloatArray) -> FloatArray:
     if not len(residual):
         return residual
     try:
-        return np.linalg.solve(jacobian, residual)
+        return np.asarray(np.linalg.solve(jacobian, residual), dtype=np.float64)
     except np.linalg.LinAlgError:
-        return np.linalg.lstsq(jacobian, residual, rcond=1e-14)[0]
+        return np.asarray(np.linalg.lstsq(jacobian, residual, rcond=1e-14)[0], dtype=np.float64)
 
 
 class _Statics:
@@ -172,7 +172,7 @@ class _Statics:
 
     def deflection(self, forces: FloatArray, deviation: FloatArray) -> FloatArray:
         """Displacements (n,) of the structure."""
-        return self.u_0 - self.columns @ np.concatenate([forces, deviation])
+        return np.asarray(self.u_0 - self.columns @ np.concatenate([forces, deviation]))
 
     def at(self, u_x: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Contact forces, approaches and elongations."""

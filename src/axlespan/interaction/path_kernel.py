@@ -114,8 +114,8 @@ def sandwich(Z: Any, offset: Any, low: Any, high: Any, local: Any, weights: Any,
             for a in range(0, count[i], 4):
                 p0, p1, p2, p3 = place[i, a], place[i, a + 1], place[i, a + 2], place[i, a + 3]
                 o0, o1, o2, o3 = offset[p0], offset[p1], offset[p2], offset[p3]
-                first = max(first, max(max(o0, o1), max(o2, o3)))
-                last = min(last, min(min(o0, o1), min(o2, o3)) + width)
+                first = max(first, o0, o1, o2, o3)
+                last = min(last, o0 + width, o1 + width, o2 + width, o3 + width)
             if first < last:
                 row[first:last] = 0.0
             for a in range(0, count[i], 4):

@@ -16,9 +16,9 @@ from axlespan.interaction.crossing import Crossing
 from axlespan.interaction.line_points import line_positions
 from axlespan.interaction.outputs import envelope_names, field_steps, sensor_names
 from axlespan.interaction.sensors import SensorPlace, split_places
+from axlespan.model.materials import require_positive
 from axlespan.running.path import PolynomialPath
 from axlespan.running.structure import RAIL_LINE
-from axlespan.model.materials import require_positive
 
 #: N12's law of contact.
 RIGID = Rigid()

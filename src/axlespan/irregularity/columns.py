@@ -3,59 +3,73 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 
 import numpy as np
 
 from axlespan.errors import InputError, Place
 from axlespan.irregularity.checks import Array, nearest
+from axlespan.units import LENGTH, factor
 
 __all__ = ["read_columns"]
 
 _DELIMITERS = (";", "\t", ",")
 _DECIMAL_COMMA = (";", "\t")
+# A name with its unit behind it: r [mm], height (mm).
+_NAMED = re.compile(r"(.*?)\s*([\[(])\s*([^\])]*?)\s*[\])]")
+# Headers without delimiters: words, each perhaps with a unit.
+_WORDS = re.compile(r"[^\s\[(]+(?:\s*[\[(][^\])]*[\])])?")
 
 
 def read_columns(
-    path: str | Path, columns: tuple[int | str, int | str] = (0, 1)
+    path: str | Path, columns: tuple[int | str, int | str] = (0, 1), scale: float | None = None
 ) -> tuple[Array, Array, list[int]]:
-    """Read two columns of a text file: positions and values.
+    """Read two columns of a text file: positions and heights, both in meters.
 
     Fields are separated by semicolons, tabs, commas or blanks (found from the first row); with semicolons and
     tabs a comma is a decimal comma. Empty lines and what follows a ``#`` are skipped; a first row that isn't
-    numbers is a header.
+    numbers is a header. Lengths have the units that the header gives them, ``x [m]; r [mm]``, else meters.
 
     Parameters
     ----------
     path : str or Path
         The file.
     columns : tuple
-        The two columns by number (from 0) or by their names in the header.
+        The two columns by number (from 0) or by their names in the header, with or without the unit.
+    scale : float, optional
+        Factor from the file's heights to meters, in place of the unit in the header.
 
     Returns
     -------
     x, r : array, (n,)
-        The columns; an empty field is NaN.
+        The columns [m]; an empty field is NaN.
     lines : list of int
         The line of the file that each entry stands on, counted from 1.
 
     Raises
     ------
     InputError
-        When the file can't be read, a column is missing or a field isn't a number.
+        When the file can't be read, a column is missing, a unit isn't one of length or a field isn't a number.
     """
     rows = _rows(Path(path))
     if not rows:
         raise InputError("has no rows", field="file", place=Place(str(path)))
     delimiter = next((d for d in _DELIMITERS if d in rows[0][1]), None)
     fields = [(line, [f.strip().strip('"') for f in text.split(delimiter)]) for line, text in rows]
-    header = fields.pop(0)[1] if not _is_number(fields[0][1][0], delimiter) else None
+    header, top = None, Place(str(path), rows[0][0])
+    if not _is_number(fields[0][1][0], delimiter):
+        names = fields.pop(0)[1]
+        header = names if delimiter else _WORDS.findall(rows[0][1])
     chosen = [_column_number(c, header, path) for c in columns]
+    factors = [_factor(c, header, top) for c in chosen]
+    if scale is not None:
+        factors[1] = scale
     data = np.empty((len(fields), 2))
     for i, (line, row) in enumerate(fields):
         for j, c in enumerate(chosen):
             data[i, j] = _number(row, c, delimiter, Place(str(path), line))
-    return data[:, 0], data[:, 1], [line for line, _ in fields]
+    return factors[0] * data[:, 0], factors[1] * data[:, 1], [line for line, _ in fields]
 
 
 def _rows(path: Path) -> list[tuple[int, str]]:
@@ -75,6 +89,9 @@ def _column_number(column: int | str, header: list[str] | None, path: str | Path
         raise InputError(
             "is a name, but the file has no header row", field="columns", value=column, place=Place(str(path))
         )
+    bare = [named[1] if (named := _NAMED.fullmatch(name)) else name for name in header]
+    if column not in header and column in bare:
+        return bare.index(column)
     if column not in header:
         raise InputError(
             f"is not in the header: {', '.join(header)}",
@@ -84,6 +101,20 @@ def _column_number(column: int | str, header: list[str] | None, path: str | Path
             place=Place(str(path)),
         )
     return header.index(column)
+
+
+def _factor(column: int, header: list[str] | None, place: Place) -> float:
+    """Factor to meters by the unit behind a name of the header; remarks in parentheses are no units."""
+    name = header[column] if header is not None and column < len(header) else ""
+    named = _NAMED.fullmatch(name)
+    if named is None or not named[3]:
+        return 1.0
+    try:
+        return factor(named[3], LENGTH)
+    except InputError as error:
+        if named[2] == "(":
+            return 1.0
+        raise InputError(error.rule, field=name, fix="Write m, mm or km", place=place) from None
 
 
 def _number(row: list[str], column: int, delimiter: str | None, place: Place) -> float:

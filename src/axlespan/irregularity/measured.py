@@ -76,9 +76,9 @@ class Measurement:
 
     @classmethod
     def from_csv(
-        cls, path: str | Path, *, columns: tuple[int | str, int | str] = (0, 1), scale: float = 1.0
+        cls, path: str | Path, *, columns: tuple[int | str, int | str] = (0, 1), scale: float | None = None
     ) -> Measurement:
-        """Read a measurement from a text file with two columns, x [m] and r.
+        """Read a measurement from a text file with two columns, x and r.
 
         Parameters
         ----------
@@ -86,14 +86,15 @@ class Measurement:
             The file: fields separated by commas, semicolons, tabs or blanks, with or without a header.
         columns : tuple
             Positions and heights: numbers of columns (from 0) or names in the header.
-        scale : float
-            Factor from the file's heights to meters: 1e-3 for a file in millimeters.
+        scale : float, optional
+            Factor from the file's heights to meters, 1e-3 for a file in millimeters; by the unit in its header,
+            ``x [m]; r [mm]``, when left out, else 1.
         """
         require_finite(scale=scale)
-        x, r, lines = read_columns(path, columns)
+        x, r, lines = read_columns(path, columns, scale)
         finite = np.isfinite(x) & np.isfinite(r)
         try:
-            return cls.from_points(x, scale * r)
+            return cls.from_points(x, r)
         except InputError as error:
             bad: int | None = None
             if not finite.all():

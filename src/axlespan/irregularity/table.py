@@ -54,9 +54,9 @@ class Table:
 
     @classmethod
     def from_csv(
-        cls, path: str | Path, *, columns: tuple[int | str, int | str] = (0, 1), scale: float = 1.0
+        cls, path: str | Path, *, columns: tuple[int | str, int | str] = (0, 1), scale: float | None = None
     ) -> Table:
-        """Read the points from a text file with two columns, x [m] and r.
+        """Read the points from a text file with two columns, x and r.
 
         Parameters
         ----------
@@ -64,16 +64,17 @@ class Table:
             The file; see `columns` for which of its columns are read.
         columns : tuple
             Positions and heights: numbers of columns (from 0) or names in the header.
-        scale : float
-            Factor from the file's heights to meters: 1e-3 for a file in millimeters.
+        scale : float, optional
+            Factor from the file's heights to meters, 1e-3 for a file in millimeters; by the unit in its header,
+            ``x [m]; r [mm]``, when left out, else 1.
         """
         require_finite(scale=scale)
-        x, r, lines = read_columns(path, columns)
+        x, r, lines = read_columns(path, columns, scale)
         bad = np.flatnonzero(
             ~(np.isfinite(x) & np.isfinite(r)) | np.concatenate(([False], np.diff(x) <= 0.0))
         )
         try:
-            return cls(x, scale * r)
+            return cls(x, r)
         except InputError as error:
             raise error.located(Place(str(path), lines[int(bad[0])] if bad.size else None)) from None
 

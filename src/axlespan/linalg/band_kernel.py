@@ -73,16 +73,16 @@ def single(width: int) -> Loop:
             first -= forward[i, two] * work[k - two]
             work[k] = (first + second) - forward[i, one] * work[k - one]
         for j in range(n):
-            i = n - one - j
-            k = i + w
-            first, second = backward[i, 0] * work[k], 0.0
+            r = n - one - j
+            k = r + w
+            first, second = backward[r, 0] * work[k], 0.0
             for e in range(np.uint64(pairs)):
                 d = w - two * e
-                first -= backward[i, d] * work[k + d]
-                second -= backward[i, d - one] * work[k + d - one]
-            first -= backward[i, two] * work[k + two]
-            work[k] = (first + second) - backward[i, one] * work[k + one]
-            x[rows[i]] = work[k]
+                first -= backward[r, d] * work[k + d]
+                second -= backward[r, d - one] * work[k + d - one]
+            first -= backward[r, two] * work[k + two]
+            work[k] = (first + second) - backward[r, one] * work[k + one]
+            x[rows[r]] = work[k]
 
     return substitute_one
 

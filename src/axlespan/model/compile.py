@@ -55,7 +55,10 @@ def compile_model(model: Model) -> Compiled:
     stiffness, mass, damping = (_projected(matrix, elimination) for matrix in (stiffness, mass, damping))
     nonlinear = _nonlinear(model, table, elimination)
     if isinstance(model.damping, Rayleigh):  # the reference stiffness of a nonlinear spring damps nothing
-        linear = stiffness - sum((s.law.stiffness * (s.rows.T @ s.rows) for s in nonlinear), 0.0 * stiffness)
+        linear = stiffness
+        for springs in nonlinear:
+            k = np.broadcast_to(springs.stiffness, springs.gap.shape)
+            linear = linear - springs.rows.T @ sp.diags_array(k) @ springs.rows
         damping = sp.csr_array(damping + model.damping.alpha * mass + model.damping.beta * linear)
     position = np.full(table.size, -1, dtype=np.int64)
     position[independent] = np.arange(len(independent))

@@ -27,12 +27,12 @@ class SpringLaw(Protocol):
     """Force and tangent of a spring or dashpot."""
 
     @property
-    def stiffness(self) -> float:
+    def stiffness(self) -> float | FloatArray:
         """Reference stiffness [N/m], not negative."""
         ...
 
     @property
-    def reference_damping(self) -> float:
+    def reference_damping(self) -> float | FloatArray:
         """Dashpot [N s/m] that stands in the damping matrix, not negative."""
         ...
 
@@ -71,31 +71,31 @@ class Stateless:
         return state
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class UnilateralSpring(Stateless):
     """A spring that only pushes: ballast under a sleeper, a bearing that may lift, a bump stop with its gap.
 
     Parameters
     ----------
-    stiffness : float
-        In compression [N/m].
-    damping : float
+    stiffness : float or array (n_spring,)
+        In compression [N/m]; one for all springs of a group or one each.
+    damping : float or array (n_spring,)
         Of a dashpot beside it, while it touches [N s/m]; the two together never pull.
     touch : float
         Compression [m] over which the dashpot comes in: without that its force would jump at a touch.
     """
 
-    stiffness: float
-    damping: float = 0.0
+    stiffness: float | FloatArray
+    damping: float | FloatArray = 0.0
     touch: float = 1e-6
 
     def __post_init__(self) -> None:
-        require_positive(self.stiffness, "stiffness")
-        require_positive(self.damping, "damping", zero=True)
+        require_positive(float(np.min(self.stiffness)), "stiffness")
+        require_positive(float(np.min(self.damping)), "damping", zero=True)
         require_positive(self.touch, "touch")
 
     @property
-    def reference_damping(self) -> float:  # type: ignore[override]
+    def reference_damping(self) -> float | FloatArray:  # type: ignore[override]
         """That of the spring in compression [N s/m]."""
         return self.damping
 
@@ -143,7 +143,7 @@ class PowerSpring(Stateless):
     @property
     def stiffness(self) -> float:
         """Tangent at the reference elongation [N/m]."""
-        return self.coefficient * self.exponent * self.reference ** (self.exponent - 1.0)
+        return float(self.coefficient * self.exponent * self.reference ** (self.exponent - 1.0))
 
     def force(self, e: FloatArray, rate: FloatArray, state: FloatArray) -> FloatArray:
         """K |e|^n sign(e)."""
@@ -372,9 +372,7 @@ class NonlinearPart:
 
     def matrices(self, points: FloatArray) -> ElementMatrices:
         """The reference stiffness and damping."""
-        pair, shape = np.array([[1.0, -1.0], [-1.0, 1.0]]), (len(self.nodes), 2, 2)
-        damping = self.law.reference_damping
-        return ElementMatrices(
-            stiffness=np.broadcast_to(self.law.stiffness * pair, shape).copy(),
-            damping=np.broadcast_to(damping * pair, shape).copy() if damping else None,
-        )
+        pair, n = np.array([[1.0, -1.0], [-1.0, 1.0]]), (len(self.nodes),)
+        k, c = (np.broadcast_to(v, n) for v in (self.law.stiffness, self.law.reference_damping))
+        damping = c[:, None, None] * pair if np.any(c) else None
+        return ElementMatrices(stiffness=k[:, None, None] * pair, damping=damping)

@@ -41,8 +41,8 @@ class SpringRows:
     law: SpringLaw
     rows: sp.csr_array  # (n_spring, n): elongations e = rows @ u [m]
     gap: FloatArray  # (n_spring,) added to the elongations [m]
-    stiffness: float = 0.0  # reference, in the matrices [N/m]
-    damping: float = 0.0  # [N s/m]
+    stiffness: float | FloatArray = 0.0  # reference, in the matrices; of all or of each [N/m]
+    damping: float | FloatArray = 0.0  # [N s/m]
 
 
 @dataclass(frozen=True, eq=False)

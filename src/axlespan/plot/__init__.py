@@ -1,7 +1,11 @@
 """Figures: one function per figure, a function of results that draws into matplotlib axes and returns them.
 
-matplotlib is imported here and nowhere else, so that computing does not wait for it.
+matplotlib is imported here and nowhere else, so that computing does not wait for it. Figures of studies are loaded
+when one is first used.
 """
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 from axlespan.plot.animation import animation
 from axlespan.plot.comparison import comparison
@@ -15,8 +19,10 @@ from axlespan.plot.reactions import reactions
 from axlespan.plot.sections import envelope, section_force
 from axlespan.plot.spectra import spectrum
 from axlespan.plot.standard import draw_figures, save, standard_figures
-from axlespan.plot.study import converging, draw_study, exceedance, over_speed, study_figures
 from axlespan.plot.verdict_bars import verdict_bars
+
+if TYPE_CHECKING:
+    from axlespan.plot.study import converging, draw_study, exceedance, over_speed, study_figures
 
 __all__ = [
     "acceleration",
@@ -45,3 +51,12 @@ __all__ = [
     "velocity",
     "verdict_bars",
 ]
+
+_OF_STUDIES = ("converging", "draw_study", "exceedance", "over_speed", "study_figures")
+
+
+def __getattr__(name: str) -> Any:
+    """Load figures of studies when they are first used."""
+    if name in _OF_STUDIES:
+        return getattr(import_module("axlespan.plot.study"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

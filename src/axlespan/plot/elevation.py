@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle, FancyBboxPatch, Rectangle
 
@@ -58,17 +57,14 @@ def elevation(
     if head is None:
         head = begin + (_HEAD if way > 0 else 1.0 - _HEAD) * length
     depth = _depth(drawing, length)
-    axes = axes_or_new(ax)
+    top, bottom = max(4.8, 0.02 * length), -depth - max(0.03 * length, 1.2)
+    height = float(np.clip(SIZE[0] * (top - bottom) / (right - left), 0.5, 4.0))
+    axes = axes_or_new(ax, (SIZE[0], height + 0.75))
     _ground(axes, (left, begin, end, right), depth)
     _deck(axes, drawing, begin, end, depth)
     for unit in units_of(drawing.content):
         if unit.train == 0:
             _vehicle(axes, unit, head, way)
-    top = max(4.8, 0.02 * length)
-    bottom = -depth - max(0.03 * length, 1.2)
-    if ax is None:
-        height = SIZE[0] * (top - bottom) / (right - left)
-        plt.gcf().set_size_inches(SIZE[0], float(np.clip(height, 0.5, 4.0)) + 0.75)
     axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal", yticks=[], xlabel="Position [m]")
     axes.grid(visible=False)
     axes.spines[["left", "right", "top"]].set_visible(False)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from matplotlib.figure import Figure
+from matplotlib import pyplot as plt
+from matplotlib.axes import Axes
+from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 from mpl_toolkits.mplot3d.art3d import Line3DCollection  # type: ignore[import-untyped]
 
 from axlespan.errors import InputError
@@ -12,7 +14,7 @@ from axlespan.linalg.eigen import Modes
 from axlespan.model.modal import full_shapes
 from axlespan.model.nodal import nodal_values
 from axlespan.model.outline import outline
-from axlespan.plot.style import COLORS, GUIDE, SIZE, new_figure
+from axlespan.plot.style import COLORS, GUIDE, SIZE, axes_or_new
 from axlespan.running.structure import MAIN_LINE, Structure
 
 FloatArray = npt.NDArray[np.float64]
@@ -25,10 +27,25 @@ _MOST = 20
 _EXAGGERATION = 0.08
 
 
-def line_shapes(structure: Structure, modes: Modes, line: str = MAIN_LINE) -> Figure:
+def line_shapes(structure: Structure, modes: Modes, line: str = MAIN_LINE, *, ax: Axes | None = None) -> Axes:
     """Draw the vertical displacements of a running line in up to 20 modes, one above the other.
 
     The largest displacement anywhere in the structure is 1: modes that hardly move the line look flat.
+
+    Parameters
+    ----------
+    structure : Structure
+    modes : Modes
+        From :func:`axlespan.model.modal.modes_of`, its ``modes``.
+    line : str
+        Name of the running line.
+    ax : Axes, optional
+        Drawn into; a new pyplot figure, as high as it needs, when left out.
+
+    Raises
+    ------
+    InputError
+        If there is no line of that name.
     """
     path, system = structure.line(line), structure.system
     position = np.linspace(path.start, path.stop, _POINTS)
@@ -36,20 +53,30 @@ def line_shapes(structure: Structure, modes: Modes, line: str = MAIN_LINE) -> Fi
     shapes = np.zeros((system.size, len(modes)))
     shapes[system.free] = modes.shapes
     vertical = path.rows(position, system.size) @ shapes / _sizes(structure, modes)
-    figure, ax = new_figure((SIZE[0], 0.9 + 0.62 * len(modes)))
+    axes = axes_or_new(ax, (SIZE[0], 0.9 + 0.62 * len(modes)))
     bases = -_APART * np.arange(len(modes))
     for i, base in enumerate(bases):
-        ax.axhline(base, color=GUIDE, linewidth=0.6)
-        ax.plot(position, base + vertical[:, i], color=COLORS[0])
-    ax.set_yticks(bases, [f"{i + 1}:  {f:.4g} Hz" for i, f in enumerate(modes.frequencies)])
-    ax.set_ylim(bases[-1] - 1.3, 1.3)
-    ax.grid(axis="y", visible=False)
-    ax.set_xlabel("Position along the line [m]")
-    return figure
+        axes.axhline(base, color=GUIDE, linewidth=0.6)
+        axes.plot(position, base + vertical[:, i], color=COLORS[0])
+    axes.set_yticks(bases, [f"{i + 1}:  {f:.4g} Hz" for i, f in enumerate(modes.frequencies)])
+    axes.set_ylim(bases[-1] - 1.3, 1.3)
+    axes.grid(axis="y", visible=False)
+    axes.set_xlabel("Position along the line [m]")
+    return axes
 
 
-def space_shape(structure: Structure, modes: Modes, i: int) -> Figure:
-    """Draw the outline of a structure's model in its i-th mode (from 0), over that at rest.
+def space_shape(structure: Structure, modes: Modes, i: int, *, ax: Axes3D | None = None) -> Axes3D:
+    """Draw the outline of a structure's model in its i-th mode, over that at rest.
+
+    Parameters
+    ----------
+    structure : Structure
+    modes : Modes
+        From :func:`axlespan.model.modal.modes_of`, its ``modes``.
+    i : int
+        Number of the mode, from 0.
+    ax : Axes3D, optional
+        Drawn into; a new pyplot figure when left out.
 
     Raises
     ------
@@ -67,8 +94,9 @@ def space_shape(structure: Structure, modes: Modes, i: int) -> Figure:
     lowest, highest = model.points.min(axis=0), model.points.max(axis=0)
     reach = float(np.linalg.norm(highest - lowest))
     moved = model.points + _EXAGGERATION * reach / max(np.abs(shape).max(), 1e-300) * shape
-    figure = Figure(figsize=(SIZE[0], 0.7 * SIZE[0]), layout="constrained")
-    ax = figure.add_subplot(projection="3d")
+    if ax is None:
+        figure = plt.figure(figsize=(SIZE[0], 0.7 * SIZE[0]), layout="constrained")
+        ax = figure.add_subplot(projection="3d")
     size = np.linalg.norm(shape, axis=1)
     amount = size[edges].mean(axis=1) / max(size.max(), 1e-300)
     ax.add_collection3d(Line3DCollection(model.points[edges], colors=GUIDE, linewidths=0.3, alpha=0.4))
@@ -84,7 +112,7 @@ def space_shape(structure: Structure, modes: Modes, i: int) -> Figure:
         ax.locator_params(axis=axis, nbins=max(2, round(6 * extent)))
     ax.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
     ax.set_title(f"Mode {i + 1}: {modes.frequencies[i]:.4g} Hz", fontsize=10.0)
-    return figure
+    return ax
 
 
 def _sizes(structure: Structure, modes: Modes) -> FloatArray:

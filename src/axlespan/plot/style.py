@@ -51,13 +51,19 @@ def new_figure(size: tuple[float, float] = SIZE) -> tuple[Figure, Axes]:
         return figure, figure.subplots()
 
 
-def axes_or_new(ax: Axes | None) -> Axes:
-    """The axes given, or those of a new pyplot figure."""
+def axes_or_new(ax: Axes | None, size: tuple[float, float] = SIZE) -> Axes:
+    """The axes given, or those of a new pyplot figure of a size [inch]."""
     if ax is not None:
         return ax
     with mpl.rc_context(_RC):
-        _, fresh = plt.subplots(figsize=SIZE, layout="constrained")
+        _, fresh = plt.subplots(figsize=size, layout="constrained")
         return fresh
+
+
+def figure_of(ax: Axes) -> Figure:
+    """The figure that axes belong to."""
+    found = ax.figure
+    return found if isinstance(found, Figure) else found.figure
 
 
 def finish(ax: Axes, xlabel: str, ylabel: str, window: tuple[float, float] | None = None) -> Axes:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 
 from axlespan.errors import InputError
@@ -41,9 +40,7 @@ def verdict_bars(verdicts: Iterable[Verdict], *, ax: Axes | None = None) -> Axes
         fix = "Look at reason and outcome of each verdict"
         raise InputError("have no limit to draw", field="verdicts", value=len(everything), fix=fix)
     shown.sort(key=lambda pair: pair[0])
-    axes = axes_or_new(ax)
-    if ax is None:
-        plt.gcf().set_size_inches(SIZE[0], 1.3 + 0.34 * len(shown))
+    axes = axes_or_new(ax, (SIZE[0], 1.3 + 0.34 * len(shown)))
     longest = min(max([1.0] + [used for used, _ in shown if math.isfinite(used)]), _LONGEST)
     for row, (used, verdict) in enumerate(shown):
         length = min(used, longest)
@@ -74,5 +71,5 @@ def _said(used: float, verdict: Verdict) -> str:
     """Value and limit in words: ``109 %: 3.81 of 3.5 m/s^2``."""
     share = f"{100.0 * used:.0f} %" if math.isfinite(used) else "beyond"
     least = "at least " if verdict.at_least else ""
-    unit = verdict.unit if verdict.unit not in ("", "-") else ""
+    unit = "" if verdict.unit == "-" else verdict.unit.replace("^2", "²")
     return f"{share}: {verdict.value:.3g}, limit {least}{verdict.limit:.3g} {unit}".rstrip()

@@ -27,8 +27,7 @@ from axlespan.report.shapes import units_of
 from axlespan.report.sketch import sketch
 from axlespan.report.space import space
 from axlespan.report.spectra import spectra
-from axlespan.report.stored import Stored, opened
-from axlespan.report.study_store import is_study
+from axlespan.report.stored import Stored, is_study, opened
 from axlespan.report.tables import badge, check_table, peak_tables, verdict_table
 from axlespan.report.units import number
 from axlespan.report.words import case_content, given_values, sentences
@@ -164,6 +163,8 @@ def _outcome_badge(summary: Mapping[str, Any]) -> str:
     verdicts = [str(item.get("outcome")).lower() for item in summary.get("verdicts") or []]
     if any(word in ("fail", "failed", "exceeded") for word in verdicts):
         return '<span class="badge bad"><span aria-hidden="true">✗</span> a limit is exceeded</span>'
+    if summary.get("verdict") == "pass" and "pass" in verdicts:
+        return '<span class="badge good"><span aria-hidden="true">✓</span> completed, self-checks and limits passed</span>'
     if summary.get("verdict") == "pass":
         return '<span class="badge good"><span aria-hidden="true">✓</span> completed, all self-checks passed</span>'
     return '<span class="badge warn"><span aria-hidden="true">!</span> completed, needs attention</span>'
@@ -173,10 +174,10 @@ def _notices(stored: Stored, summary: Mapping[str, Any], content: Mapping[str, A
     outcome = summary.get("outcome") or {}
     found = []
     if outcome.get("code") not in (None, "", "completed"):
-        remedy = f" {outcome['remedy']}" if outcome.get("remedy") else ""
+        said = [str(outcome[key]).rstrip(".") for key in ("message", "remedy") if outcome.get(key)]
         found.append(
-            f"The analysis did not reach its end, and what follows is what was computed until then. "
-            f"{outcome.get('message') or ''}{remedy}"
+            "The analysis did not reach its end, and what follows is what was computed until then. "
+            + " ".join(f"{text[:1].upper()}{text[1:]}." for text in said)
         )
     found += stored.notices
     if stored.file is not None and len(stored.time) > 1 and not content.get("maps"):

@@ -21,6 +21,7 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 RESULT, SUMMARY = "result.nc", "summary.json"
+_STORE = "store.json"  # of a study
 _STAGES = ".axlespan-*"  # folders of runs that are not complete
 _RUN_IT = "Give a folder that axlespan run wrote"
 _BROKEN = (OSError, ArithmeticError, AttributeError, LookupError, RuntimeError, TypeError, ValueError)
@@ -111,6 +112,11 @@ class Stored:
         text = f"{what} cannot be read and is left out ({words})."
         if text not in self.notices:
             self.notices.append(text)
+
+
+def is_study(folder: Path) -> bool:
+    """Whether a folder holds the store of a study."""
+    return (folder / _STORE).is_file()
 
 
 @contextmanager

@@ -16,7 +16,7 @@ from axlespan.report.pack import Pack
 from axlespan.report.thinning import rows_for
 from axlespan.report.units import shown_unit
 from axlespan.study.sweep.answers import Answers
-from axlespan.study.sweep.store import HEADER, Store
+from axlespan.study.sweep.store import Store
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -33,11 +33,6 @@ class StoredStudy:
     answers: Answers
     resonances: Mapping[str, Any]  # by train, as summary.json has them
     notices: list[str]
-
-
-def is_study(folder: Path) -> bool:
-    """Whether a folder holds the store of a study."""
-    return (folder / HEADER).is_file()
 
 
 def open_study(folder: Path, summary: Mapping[str, Any]) -> StoredStudy:

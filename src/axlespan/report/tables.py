@@ -81,8 +81,8 @@ def bar(share: Any) -> str:
     state = "over" if share > 1.0 else "near" if share > 0.9 else "under"
     width = min(max(100.0 * share, 0.0), 100.0)
     return (
-        f'<span class="bar {state}" role="img" aria-label="{100.0 * share:.0f} percent of the limit">'
-        f'<span style="width:{width:.1f}%"></span></span> <span class="n">{100.0 * share:.0f} %</span>'
+        f'<span class="share"><span class="bar {state}" role="img" aria-label="{100.0 * share:.0f} percent of the limit">'
+        f'<span style="width:{width:.1f}%"></span></span> <span class="n">{100.0 * share:.0f} %</span></span>'
     )
 
 
@@ -203,8 +203,9 @@ def _table(caption: str, heads: Sequence[str], rows: Sequence[str], numeric: Seq
         f'<th scope="col"{" class=n" if i in numeric else ""}>{escape(head)}</th>'
         for i, head in enumerate(heads)
     )
+    kind = ' class="cards-on-phone"' if rows and "data-label" in rows[0] else ""
     return (
-        f'<div class="scroll" tabindex="0" role="region" aria-label="{escape(caption)}"><table><caption>{escape(caption)}'
+        f'<div class="scroll" tabindex="0" role="region" aria-label="{escape(caption)}"><table{kind}><caption>{escape(caption)}'
         f"</caption><thead><tr>{top}</tr></thead><tbody>{''.join(rows)}</tbody></table></div>"
     )
 

@@ -11,7 +11,7 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 #: Points of a plot, and values of all its curves.
-POINTS, VALUES = 6000, 48_000
+POINTS, VALUES = 6000, 72_000
 _LEAST = 1200
 
 

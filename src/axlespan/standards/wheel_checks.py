@@ -9,11 +9,15 @@ from axlespan.standards.filters import low_pass
 from axlespan.standards.given import Given
 from axlespan.standards.limits import largest_wheel_force, limit_of
 from axlespan.standards.verdict import FROM_MEMORY, Verdict, judged, not_assessed
+from axlespan.vehicles.vehicle import LEFT, RIGHT
 
 FloatArray = npt.NDArray[np.float64]
 
 #: Frequency of the low-pass of wheel forces [Hz] (EN 14363, from memory).
 WHEEL_FREQUENCY = 20.0
+
+# Lines of left and right wheels.
+_SIDES = frozenset((LEFT, RIGHT))
 
 _FORCES = "the loads are given forces that no vehicle carries: they do not change"
 
@@ -125,11 +129,15 @@ def derailment(given: Given) -> list[Verdict]:
 
 
 def _share(given: Given) -> FloatArray:
-    """Share of a contact's force that one wheel has: 1/2 for axles of rail vehicles in a plane model, else 1."""
-    lines = () if given.crossing is None else given.crossing.contact_lines
-    if len(lines) != len(given.result.contact):
+    """Share of a contact's force that one wheel has: 1/2 for axles of vehicles in the plane, else 1.
+
+    A left or right wheel is one wherever it runs: on one line for both, or on the rails of a second track.
+    """
+    if given.crossing is None or len(given.crossing.contact_lines) != len(given.result.contact):
         return np.full(len(given.result.contact), 0.5)
-    return np.array([1.0 if line in ("left", "right") else 0.5 for line in lines])
+    own = [point.line for item in given.crossing.placements for point in item.vehicle.contacts]
+    both = zip(own, given.crossing.contact_lines, strict=True)
+    return np.array([0.5 if _SIDES.isdisjoint(names) else 1.0 for names in both])
 
 
 def _filtered(given: Given) -> tuple[FloatArray, FloatArray] | str:

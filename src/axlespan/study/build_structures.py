@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from axlespan.bridges import (
@@ -15,6 +16,8 @@ from axlespan.bridges import (
     simple_spans,
 )
 from axlespan.bridges.condition import Damage, in_condition
+from axlespan.bridges.unilateral import with_unilateral_springs
+from axlespan.errors import InputError
 from axlespan.running.structure import Structure
 from axlespan.study import case_structure
 from axlespan.study.build_matrices import structure_of_matrices
@@ -35,6 +38,22 @@ def structure_of(case: case_structure.Structure) -> BuiltStructure:
     InputError
         If something is wrong that only shows now; fields are paths under the structure.
     """
+    built = _structure_of(case)
+    for number, name in enumerate(getattr(case, "may_lift", ())):
+        try:
+            structure = with_unilateral_springs(built.structure, f"support {name}")
+        except InputError as error:
+            raise InputError(
+                "must be a support with a stiffness along z",
+                field=f"may_lift.{number}",
+                value=name,
+                fix="Give it stiffness: {z: 1 GN/m} in place of fixed",
+            ) from error
+        built = replace(built, structure=structure)
+    return built
+
+
+def _structure_of(case: case_structure.Structure) -> BuiltStructure:
     if isinstance(case, case_structure.SimpleSpan):
         return laid_on(_as_it_is(_simple_span(case), case), case.track)
     if isinstance(case, case_structure.ContinuousBeam):

@@ -22,6 +22,7 @@ from axlespan.study.case_nodes import (
     Start,
     Tie,
 )
+from axlespan.study.case_support import MayLift
 from axlespan.study.case_track import Laid
 from axlespan.study.check_lists import Several
 from axlespan.study.checks import Measured, OneOf, Part
@@ -216,6 +217,8 @@ class MeshStructure(Mesh):
     """Several running lines by their names, in place of one; the first is the main one."""
     damping: StructuralDamping | None = None
     """Structural damping; none when left out."""
+    may_lift: MayLift = ()
+    """Supports on springs that only push: bearings that may lift. Own weight acts first then."""
     track: Laid = None
     """Track on the running line, or in space on two running lines left and right; none when left out."""
 

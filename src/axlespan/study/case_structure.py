@@ -12,7 +12,7 @@ from axlespan.study.case_damping import StructuralDamping
 from axlespan.study.case_grid import BeamGrid
 from axlespan.study.case_imported import MeshStructure
 from axlespan.study.case_matrices import MatricesStructure
-from axlespan.study.case_support import Bearing, Springs, Support
+from axlespan.study.case_support import Bearing, MayLift, Springs, Support
 from axlespan.study.case_track import Laid, TrackStructure
 from axlespan.study.checks import OneOf, Part
 from axlespan.study.faults import InputErrors
@@ -69,6 +69,8 @@ class SimpleSpan(Part):
     """Zones that have lost stiffness."""
     temperature: Annotated[Temperature | None, Field(examples=["{value: 25, coefficient: -0.003}"])] = None
     """Temperature that the stiffness follows; no effect when left out."""
+    may_lift: MayLift = ()
+    """Supports on springs that only push: bearings that may lift. Own weight acts first then."""
     track: Laid = None
     """Track on the bridge, before and behind it; wheels run on the deck when left out."""
 
@@ -133,6 +135,8 @@ class _Spans(BeamProperties):
     """Zones that have lost stiffness."""
     temperature: Annotated[Temperature | None, Field(examples=["{value: 25, coefficient: -0.003}"])] = None
     """Temperature that the stiffness follows; no effect when left out."""
+    may_lift: MayLift = ()
+    """Supports on springs that only push: bearings that may lift. Own weight acts first then."""
     track: Laid = None
     """Track on the bridge, before and behind it; wheels run on the deck when left out."""
 

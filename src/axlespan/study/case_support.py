@@ -16,6 +16,7 @@ from axlespan.study.quantities import (
     Flag,
     Frequency,
     Length,
+    Name,
     RotationalDashpot,
     RotationalStiffness,
     Stiffness,
@@ -105,6 +106,10 @@ class Motions(Part):
     rx: Rotation | None = None
     ry: Rotation | None = None
     rz: Rotation | None = None
+
+
+MayLift = Annotated[tuple[Name, ...], Field(examples=["[left]"])]
+"""Names of supports on springs along z."""
 
 
 class Springs(Part):

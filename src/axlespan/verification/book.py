@@ -8,15 +8,33 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 
 from axlespan.errors import InputError
-from axlespan.verification import beams, crossings, forces, methods, solids, supports, track, trains, wheels
+from axlespan.verification import (
+    beams,
+    crossings,
+    forces,
+    methods,
+    resonance,
+    rides,
+    solids,
+    supports,
+    track,
+    trains,
+    vehicles,
+    wheels,
+    yang_yau,
+)
 from axlespan.verification.case import Case, Row
 
 #: All cases, theme by theme. A new theme is a module with a tuple ``CASES``, named here.
 CASES: tuple[Case, ...] = (
     *crossings.CASES,
+    *yang_yau.CASES,
     *forces.CASES,
     *trains.CASES,
+    *resonance.CASES,
     *wheels.CASES,
+    *vehicles.CASES,
+    *rides.CASES,
     *supports.CASES,
     *track.CASES,
     *beams.CASES,

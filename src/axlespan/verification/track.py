@@ -6,9 +6,9 @@ import numpy as np
 
 import axlespan as asp
 from axlespan.bridges import SupportAt
-from axlespan.reference import WinklerBeam
+from axlespan.reference import SleeperTrack, WinklerBeam
 from axlespan.verification.case import Row, case, history, value
-from axlespan.verification.models import axle
+from axlespan.verification.models import GRAVITY, axle
 
 _HETENYI = "M. Hetényi, Beams on Elastic Foundation (1946); L. Frýba (1999) for the moving force"
 
@@ -97,4 +97,41 @@ def _running(rail: WinklerBeam, force: float) -> Row:
     )
 
 
-CASES = (rail_on_springs,)
+@case("ballasted-track", "A ballasted track at rest, and a wheel that settles on it", f"{_HETENYI}; statics")
+def ballasted_track() -> list[Row]:
+    """The track of Zhai (two rails CHN60, sleepers at 0.6 m) under 150 kN, and a wheel that runs on it.
+
+    At rest: over a sleeper and between two, against dense matrices written out by hand. Running: 1.5 t with 8 t on
+    1.2 MN/m and 20 kNs/m at 30 m/s, steps of 0.5 ms; over ten sleepers at the end of 60 m the mean of the contact
+    force is the weight, and what is left swings with the sleepers. The rail under it is as deep as at rest.
+    """
+    bays = 150
+    track = asp.bridges.ballasted_track("zhai-2004")
+    line = asp.bridges.track_on_ground(track, bays * 0.6)
+    own = SleeperTrack(2.0 * 2.059e11 * 3.217e-5, 0.6, 130e6, 275.5e6, 155e6, 156.8e6, bays)
+    load, rows = 150e3, []
+    for name, node in (("over a sleeper", bays + 1), ("between sleepers", bays)):
+        at = 0.3 * node
+        standing = asp.Crossing(line, axle(load), speed=0.0, start=at)
+        result = asp.simulate(standing, time_step=1e-3, steps=1, sensors={"there": at})
+        found, expected = 1e3 * result.sensor_displacement[0, 0], 1e3 * own.deflection(load, node)
+        rows.append(value(f"at rest, {name}", "mm", expected, found, 1e-6, "matrices by hand"))
+    wheel = asp.vehicles.sprung_mass(mass=8e3, stiffness=1.2e6, damping=20e3, unsprung_mass=1500.0)
+    speed, step = 30.0, 5e-4
+    crossing = asp.Crossing(line, asp.Train.of(wheel), speed=speed, start=0.0)
+    result = asp.simulate(crossing, time_step=step, steps=round(69.0 / speed / step))
+    since = result.time > 63.0 / speed  # ten sleepers, 400 steps
+    force = result.contact_force[since, 0]
+    weight = 9500.0 * GRAVITY
+    depth = 1e3 * result.at("vehicle_displacement", "1.wheel1.z")[since]
+    still = 0.5e3 * (own.deflection(weight, bays) + own.deflection(weight, bays + 1))
+    swing = float(np.abs(force - force.mean()).max() / weight)
+    return [
+        *rows,
+        value("running: mean contact force", "kN", 1e-3 * weight, 1e-3 * force.mean(), 1e-3, "weight"),
+        value("running: largest swing over the weight", "-", 0.0, swing, 1e-2, "sleeper passing", scale=1.0),
+        value("running: mean depth of the wheel", "mm", still, depth.mean(), 1e-2, "matrices by hand, at rest"),
+    ]
+
+
+CASES = (rail_on_springs, ballasted_track)

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 BASE = """\
-  structure: {kind: simple-span, length: 10 m, youngs_modulus: 34 GPa, second_moment: 0.1 m^4, mass_per_length: 8 t/m, elements: 6}
+  structure: {kind: simple-span, length: 10 m, youngs_modulus: 34 GPa, second_moment: 0.1 m^4, mass_per_length: 8 t/m,
+    elements: 6}
   train: [{vehicle: sprung-mass, mass: 12 t, stiffness: 1.5 MN/m, damping: 20 kNs/m, count: 2, spacing: 5 m}]
   crossing: {speed: 100 km/h}
   analysis: {time_step: 4 ms, alpha: -0.1}

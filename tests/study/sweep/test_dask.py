@@ -9,10 +9,10 @@ import threading
 import time
 
 import pytest
+from tests.study.sweep.conftest import numbers_differ
 
 from axlespan.errors import InputError
 from axlespan.study.sweep import Study, on_dask, store
-from tests.study.sweep.conftest import numbers_differ
 
 pytest.importorskip("distributed")
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore")]
@@ -36,7 +36,11 @@ class Cluster:
         command = [sys.executable, "-m", "distributed.cli." + arguments[0], *arguments[1:]]
         environment = {**os.environ, "OMP_NUM_THREADS": "1"}
         process = subprocess.Popen(
-            command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=environment, start_new_session=True
+            command,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            env=environment,
+            start_new_session=True,
         )
         self.processes.append(process)
         return process
@@ -47,7 +51,14 @@ class Cluster:
 
     def worker(self):
         return self.begin(
-            "dask_worker", self.address, "--nthreads", "1", "--no-nanny", "--no-dashboard", "--host", "127.0.0.1"
+            "dask_worker",
+            self.address,
+            "--nthreads",
+            "1",
+            "--no-nanny",
+            "--no-dashboard",
+            "--host",
+            "127.0.0.1",
         )
 
     def end(self):
@@ -140,7 +151,9 @@ def test_a_scheduler_without_workers(study, cluster, tmp_path, monkeypatch):
     cluster.scheduler()
     time.sleep(2.0)
     monkeypatch.setattr(on_dask, "PATIENCE", 3.0)
-    with pytest.raises(InputError, match=r"has no workers; waited 3 s for one. Start some with: dask worker tcp://"):
+    with pytest.raises(
+        InputError, match=r"has no workers; waited 3 s for one. Start some with: dask worker tcp://"
+    ):
         study.run(tmp_path / "out", scheduler=cluster.address)
 
 
@@ -149,7 +162,9 @@ def test_workers_with_other_versions(study, cluster, tmp_path, monkeypatch):
     cluster.worker()
     there = on_dask.versions()
     monkeypatch.setattr(on_dask, "_here", lambda: {**there, "axlespan": "9.9"})
-    with pytest.raises(InputError, match=r"has a worker with other versions: tcp://.* has axlespan .* \(here 9.9\)"):
+    with pytest.raises(
+        InputError, match=r"has a worker with other versions: tcp://.* has axlespan .* \(here 9.9\)"
+    ):
         study.run(tmp_path / "out", scheduler=cluster.address)
     assert not (tmp_path / "out").exists()
 
@@ -158,5 +173,3 @@ def test_a_local_cluster(study, tmp_path):
     small = Study.load(study.spec.source.file)
     assert small.run(tmp_path / "out", workers=2, scheduler="local").missing == 0
     assert threading.active_count() < 50
-
-

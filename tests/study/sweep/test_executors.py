@@ -5,13 +5,13 @@ import signal
 
 import numpy as np
 import pytest
+from tests.study.sweep.conftest import STUDY, numbers_differ
 
 from axlespan.study.sweep import Study, executors, workshop
 from axlespan.study.sweep.executors import InProcess, Lost, Processes
 from axlespan.study.sweep.planning import tasks
 from axlespan.study.sweep.recipe import Recipe
 from axlespan.study.sweep.workshop import run_task
-from tests.study.sweep.conftest import STUDY, numbers_differ
 
 EQUAL = 1e-10
 
@@ -62,7 +62,8 @@ def test_scenarios_of_a_structure_follow_each_other(study):
 
 def test_many_structures_share_a_task_and_time_steps_do_not(study_file):
     text = STUDY.replace("{factor: [0.9, 1.1]}", "{from: 0.08 m^4, to: 0.12 m^4, count: 50}").replace(
-        "  crossing.speed: {from: 100 km/h, to: 300 km/h, step: 40 km/h}\n", "  analysis.time_step: [4 ms, 2 ms]\n"
+        "  crossing.speed: {from: 100 km/h, to: 300 km/h, step: 40 km/h}\n",
+        "  analysis.time_step: [4 ms, 2 ms]\n",
     )
     study = Study.load(study_file(text))
     batches = [task.ids for task in work(study, 40)]

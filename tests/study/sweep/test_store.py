@@ -11,10 +11,10 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from tests.study.sweep.conftest import STUDY, numbers_differ
 
 from axlespan.errors import InputError
 from axlespan.study.sweep import Study, files, store
-from tests.study.sweep.conftest import STUDY, numbers_differ
 
 WITH_HISTORIES = STUDY.replace(
     "passage:", "histories: {variables: [sensor_acceleration, contact_force], every: 2}\npassage:"
@@ -56,7 +56,9 @@ def require_equal(study, folder, reference):
     assert sorted(one) == sorted(other) == list(wanted.index)
     for number, values in one.items():
         assert np.abs(values - other[number]).max() < EQUAL * np.abs(values).max()
-    left = [p.name for p in folder.rglob("*") if p.name.startswith(".partial") or p.suffix in (".old", ".new")]
+    left = [
+        p.name for p in folder.rglob("*") if p.name.startswith(".partial") or p.suffix in (".old", ".new")
+    ]
     assert left == []
 
 
@@ -159,7 +161,9 @@ def test_kills_at_random_moments(study, path, tmp_path, start):
             process.kill()
             process.wait(30)
         else:
-            children = subprocess.run(["pgrep", "-P", str(process.pid)], capture_output=True, text=True).stdout
+            children = subprocess.run(
+                ["pgrep", "-P", str(process.pid)], capture_output=True, text=True, check=False
+            ).stdout
             for child in children.split()[-1:]:
                 os.kill(int(child), signal.SIGKILL)
             process.wait(120)
@@ -215,7 +219,7 @@ def test_two_runs_do_not_share_a_store(study, tmp_path):
 
 def test_a_store_is_of_one_study(study, study_file, tmp_path):
     study.run(tmp_path / "out")
-    with pytest.raises(InputError, match="holds a study already. Use --resume"):
+    with pytest.raises(InputError, match=r"holds a study already\. Use --resume"):
         study.run(tmp_path / "out")
     other = Study.load(study_file(WITH_HISTORIES.replace("0.9, 1.1", "0.9, 1.2"), "other.yaml"))
     with pytest.raises(InputError, match="holds another study"):
@@ -224,7 +228,7 @@ def test_a_store_is_of_one_study(study, study_file, tmp_path):
     (tmp_path / "full" / "notes.txt").write_text("mine")
     with pytest.raises(InputError, match="is not empty, and holds no study"):
         study.run(tmp_path / "full")
-    with pytest.raises(InputError, match="holds no study. Run axlespan sweep"):
+    with pytest.raises(InputError, match=r"holds no study\. Run axlespan sweep"):
         study.table(tmp_path / "full")
 
 
@@ -244,7 +248,9 @@ def test_a_failed_scenario_is_a_row_with_its_reason(study_file, tmp_path):
     )
     with pytest.raises(InputError, match="is only for method: iterative"):
         Study.load(study_file(text))
-    study = Study.load(study_file(text.replace("[direct, iterative]", "[iterative]").replace("[2]", "[2, 200]")))
+    study = Study.load(
+        study_file(text.replace("[direct, iterative]", "[iterative]").replace("[2]", "[2, 200]"))
+    )
     outcome = study.run(tmp_path / "out")
     table = study.table()
     assert outcome.failed == 2 and outcome.missing == 0
@@ -256,9 +262,15 @@ def test_a_failed_scenario_is_a_row_with_its_reason(study_file, tmp_path):
 
 def test_a_scenario_that_makes_no_case_is_refused_or_a_row(study_file, tmp_path):
     text = STUDY.replace("{factor: [0.9, 1.1]}", "[0.1 m^4]").replace("step: 40", "step: 200")
-    with pytest.raises(InputError, match=r"study.yaml:14:27: vary.analysis.beta = 0.01: must be at least 0.3"):
-        Study.load(study_file(text.replace("passage", "  analysis.beta: [0.3025, 0.01]\npassage"))).run(tmp_path / "o")
-    random = "  analysis.beta: {distribution: uniform, from: 0.2, to: 0.4}\nsampling: {method: sobol, count: 4}\n"
+    with pytest.raises(
+        InputError, match=r"study.yaml:15:27: vary.analysis.beta = 0.01: must be at least 0.3"
+    ):
+        Study.load(study_file(text.replace("passage", "  analysis.beta: [0.3025, 0.01]\npassage"))).run(
+            tmp_path / "o"
+        )
+    random = (
+        "  analysis.beta: {distribution: uniform, from: 0.2, to: 0.4}\nsampling: {method: sobol, count: 4}\n"
+    )
     study = Study.load(study_file(text.replace("passage", f"{random}passage")))
     study.run(tmp_path / "out")
     table = study.table()

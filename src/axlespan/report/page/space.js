@@ -16,7 +16,7 @@ class SpaceView {
     this.size = size.length();
     this.camera = new THREE.PerspectiveCamera(35, 2, 0.01 * this.size, 20 * this.size);
     this.camera.up.set(0, 0, 1);
-    this.camera.position.copy(middle).add(new THREE.Vector3(-0.35, -1, 0.5).multiplyScalar(0.88 * this.size));
+    this.camera.position.copy(middle).add(new THREE.Vector3(-0.35, -1, 0.5).multiplyScalar(0.88 * this.size + 3));
     this.controls = new THREE.OrbitControls(this.camera, this.canvas);
     this.controls.target.copy(middle);
     this.controls.update();
@@ -78,7 +78,7 @@ class SpaceView {
     this.units = this.scene.units.map(unit => ({
       unit,
       boxes: unit.boxes.map(([, , length, bottom, top, low]) => {
-        const mesh = new THREE.Mesh(new THREE.BoxGeometry(length, Math.min(low ? 2 : 2.7, this.width()), top - bottom), new THREE.MeshLambertMaterial({ color: low ? 0x56636f : 0x3f6fa3, transparent: !low, opacity: low ? 1 : 0.78 }));
+        const mesh = new THREE.Mesh(new THREE.BoxGeometry(length, Math.min(low ? 2 : 2.7, this.width()), top - bottom), new THREE.MeshLambertMaterial({ color: low ? 0x56636f : 0x3f6fa3, transparent: !low, opacity: low ? 1 : 0.5 }));
         this.world.add(mesh);
         return mesh;
       }),

@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from axlespan.errors import InputError
+from axlespan.study.case import Case
 from axlespan.study.checks import Measured, OneOf, Whole
 from axlespan.study.sweep.chance import SEED
 from axlespan.study.sweep.node import Node
@@ -46,19 +47,26 @@ class Recording:
     bits: int | None = None
     limit: float = 0.0  # largest value that the converter tells apart, in the unit of the quantity
 
-    def require(self, time_step: float) -> None:
-        """Require a sampling rate that the time step resolves.
+    def require(self, case: Case) -> None:
+        """Require time steps that resolve the sampling rate, all of them kept, and sensors.
 
         Raises
         ------
         InputError
+            Fields are paths in the study.
         """
-        if self.rate * time_step > 1.0 + 1e-9:
+        if self.rate * case.analysis.time_step > 1.0 + 1e-9:
             raise InputError(
-                f"must be at most {1.0 / time_step:g} Hz, the rate of the time steps",
+                f"must be at most {1.0 / case.analysis.time_step:g} Hz, the rate of the time steps",
                 field="records.sampling_rate",
-                value=self.rate,
                 fix="Use a shorter time_step, or a lower rate",
+            )
+        if case.output.every != 1:
+            rule = "need every time step: output.every of the base thins them without a filter"
+            raise InputError(rule, field="records", fix="Leave output.every out")
+        if not case.output.sensors:
+            raise InputError(
+                "need sensors", field="records", fix="Add output: {sensors: {midspan: 12.5 m}} to the base"
             )
 
     def record(self, values: FloatArray, time_step: float, scenario: int) -> FloatArray:

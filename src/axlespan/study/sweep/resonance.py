@@ -22,8 +22,10 @@ _FREQUENCIES: Final = 3
 _ORDERS: Final = 5
 # Trains up to which resonances are looked for.
 _TRAINS: Final = 40
-# Distances that repeat in trains lie here [m]: coaches have 10 to 30 m.
-_SPACINGS: Final = (5.0, 35.0)
+# Distances that repeat in trains lie here [m]: wheels of a bogie are closer, coaches have up to 30 m.
+_SPACINGS: Final = (3.0, 35.0)
+_CLOSE: Final = 0.01  # distances that are the same [m]
+_MOST_AXLES: Final = 2000
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,26 +59,25 @@ class Resonances:
 
 
 def spacing_of(train: Train, gravity: float = 9.81) -> float | None:
-    """The distance [m] that repeats most strongly in a train; None for one without.
+    """The distance [m] at which axles of a train follow each other most often, from 3 to 35 m; None for one without.
 
-    It is the wavelength of the largest |Σ P exp(2πi x/λ)| of its axle loads P at x, between 5 and 35 m. Of
-    wavelengths that are equally strong within 2 %, as λ and λ/2 of a train of equal axles, the longest counts.
+    Pairs of axles at the same distance, to a centimeter, count by the product of their loads. Coaches of one length
+    give that length; equal axles their distance. Two pairs are no repetition.
     """
-    offsets, loads = train.offsets, train.static_forces(gravity)
-    if len(offsets) < 3 or loads.sum() <= 0.0 or offsets.max() < 2.0 * _SPACINGS[0]:
+    order = np.argsort(train.offsets)
+    offsets, loads = train.offsets[order], train.static_forces(gravity)[order]
+    if len(offsets) < 3 or len(offsets) > _MOST_AXLES:
         return None
-    high = min(_SPACINGS[1], float(offsets.max()))
-    wavelengths = np.linspace(_SPACINGS[0], high, 6001)
-    signature = np.zeros(len(wavelengths))
-    for begin in range(0, len(wavelengths), 512):
-        some = wavelengths[begin : begin + 512]
-        signature[begin : begin + 512] = np.abs(np.exp(2j * np.pi * offsets / some[:, None]) @ loads)
-    top = signature.max()
-    inner = np.flatnonzero((signature[1:-1] >= signature[:-2]) & (signature[1:-1] >= signature[2:])) + 1
-    strong = inner[signature[inner] >= 0.98 * top] if len(inner) else inner
-    if not len(strong) or top < 0.2 * loads.sum():
+    first, second = np.triu_indices(len(offsets), 1)
+    distance = offsets[second] - offsets[first]
+    use = (distance >= _SPACINGS[0]) & (distance <= _SPACINGS[1])
+    if not use.any():
         return None
-    return float(wavelengths[strong[-1]])
+    product = (loads[first] * loads[second])[use]
+    _, place = np.unique(np.round(distance[use] / _CLOSE).astype(np.int64), return_inverse=True)
+    weight, number = np.bincount(place, product), np.bincount(place)
+    best = int(np.argmax(np.where(number > 2, weight, 0.0)))
+    return float(np.mean(distance[use][place == best])) if number[best] > 2 else None
 
 
 def resonances_of(study: Study, trains: Sequence[str], most: int) -> Mapping[str, Resonances]:

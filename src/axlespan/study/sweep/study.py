@@ -31,7 +31,7 @@ from axlespan.study.sweep.recipe import Recipe, digest
 from axlespan.study.sweep.scenarios import Scenarios
 from axlespan.study.sweep.spec import Spec, load_spec, read_spec
 from axlespan.study.sweep.store import Header, Store
-from axlespan.study.sweep.validation import blamed, case_of, validate
+from axlespan.study.sweep.validation import MOST, blamed, case_of, validate
 from axlespan.study.sweep.workshop import Done, Workshop
 from axlespan.study.yaml_tree import read_yaml
 
@@ -218,6 +218,19 @@ class Study:
         self._recipe = Recipe.of(spec)
         self._store: Store | None = None
         validate(self._recipe, self._scenarios, spec.source)
+        self._check_records()
+
+    def _check_records(self) -> None:
+        """Require base cases that records can be made of, whatever the time step is."""
+        if self.spec.recording is None:
+            return
+        steps = {k for k, axis in enumerate(self._scenarios.axes) if "analysis.time_step" in axis.paths}
+        for number, axis, _ in self._scenarios.one_by_one(MOST):
+            if number == 0 or axis in steps:
+                try:
+                    self.spec.recording.require(self.scenario(number).case)
+                except InputError as error:
+                    raise self.spec.source.blame(error.field or "records", error.rule, error.fix) from None
 
     # --- what it is ----------------------------------------------------------------------------
 

@@ -234,7 +234,9 @@ def together(plan: Plan) -> Any:
     basis = s.basis if isinstance(s.basis, str) else id(s.basis)
     # bases that are refined until the worst of a group is good enough would depend on the group
     alone = id(plan) if s.coupling != "direct" or s.basis_tolerance is not None else None
-    footprint = (s.footprint, s.sleepers) if basis != "full" else None  # the basis holds the shapes of its loads
+    footprint = (
+        (s.footprint, s.sleepers) if basis != "full" else None
+    )  # the basis holds the shapes of its loads
     structure = id(plan.crossing.structure)
     return (structure, s.time_step, s.method, s.coupling, s.solver, basis, s.basis_modes, footprint, alone)
 
@@ -256,6 +258,12 @@ def passage(crossing: Crossing) -> float:
             if run.course.direction > 0
             else min(line.start for line in lines)
         )
+
+        speeds = run.course.speeds
+        if len(speeds.times) == 1 and speeds.speeds[0] > 0.0:
+            way = run.course.direction * (goal - run.course.start) + reach
+            latest = max(latest, run.course.delay + way / float(speeds.speeds[0]))
+            continue
 
         def left(times: FloatArray, run: Run = run, reach: float = reach, goal: float = goal) -> FloatArray:
             tail = run.course.head(times) - run.course.direction * reach

@@ -45,6 +45,15 @@ class Group:
     entry: LibraryEntry
     count: int
     spacing: float | None  # first wheel to first wheel of the next [m]
+    to_next: float | None = None  # from the last one's first wheel to that of the next group, where it differs [m]
+
+    @property
+    def reach(self) -> float | None:
+        """From the first wheel of the group to that of the next [m]; None if a spacing is not known."""
+        last = self.spacing if self.to_next is None else self.to_next
+        if last is None or (self.spacing is None and self.count > 1):
+            return None
+        return (self.count - 1) * (self.spacing or 0.0) + last
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,6 +88,13 @@ class LibraryEntry:
     length: float | None = None
     model: Vehicle | None = None
     groups: tuple[Group, ...] = ()
+
+    @property
+    def front_overhang(self) -> float | None:
+        """From the front buffer to the first wheel [m], where it is known."""
+        if self.model is None:
+            return self.groups[0].entry.front_overhang if self.groups else None
+        return None if self.model.length is None else self.model.front_overhang
 
     @property
     def is_spatial(self) -> bool:

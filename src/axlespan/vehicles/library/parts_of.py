@@ -107,7 +107,22 @@ def read_vehicle(root: Item, numbers: Quantities, title: str) -> Vehicle:
         vehicle.static_forces()
     except InputError as error:
         raise read.located(error, root) from None
-    return vehicle if overhang is None else replace(vehicle, overhang=overhang)
+    if length is not None and length < vehicle.wheelbase:
+        rule = f"must be at least {vehicle.wheelbase:g} m, which is from the first wheel to the last"
+        raise _plain(keys["length"]).wrong(rule)
+    if overhang is None:
+        return vehicle
+    if length is None:
+        raise _plain(keys["overhang"]).wrong("needs a length", "Add length, over buffers")
+    if not 0.0 <= overhang <= length - vehicle.wheelbase:
+        most = f"{length - vehicle.wheelbase:g} m, what the length leaves beside the wheels"
+        raise _plain(keys["overhang"]).wrong(f"must be between 0 and {most}")
+    return replace(vehicle, overhang=overhang)
+
+
+def _plain(item: Item) -> Item:
+    """The number of an item that may have a source beside it."""
+    return item.mapping().get("value", item) if item.is_mapping else item
 
 
 def _read_body(item: Item, numbers: Quantities, read: _Parts) -> None:

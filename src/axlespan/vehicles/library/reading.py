@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from axlespan import units
 from axlespan.errors import InputError
@@ -107,11 +108,14 @@ def _stated(item: Item, numbers: Quantities) -> Stated:
     keys = item.mapping(_STATED)
     mass = keys.get("total_mass")
     loads, frequencies = keys.get("axle_loads"), keys.get("frequencies")
+    tolerance = keys["tolerance"].quantity(units.RATIO) if "tolerance" in keys else Stated.tolerance
+    if tolerance <= 0.0:
+        raise keys["tolerance"].wrong("must be positive")
     return Stated(
         numbers.positive(mass, units.MASS, "stated.total_mass") if mass else None,
         numbers.several(loads, units.FORCE, "stated.axle_loads") if loads else (),
         numbers.several(frequencies, units.FREQUENCY, "stated.frequencies") if frequencies else (),
-        keys["tolerance"].quantity(units.RATIO) if "tolerance" in keys else Stated.tolerance,
+        tolerance,
     )
 
 
@@ -125,7 +129,7 @@ def _groups(item: Item, numbers: Quantities, other: Callable[[str], LibraryEntry
         try:
             entry = other(keys["vehicle"].text())
         except InputError as error:
-            if error.place is not None:
+            if error.place is not None and error.place.line is not None:
                 raise
             raise keys["vehicle"].wrong(error.rule, error.fix) from None
         count = keys["count"].whole() if "count" in keys else 1
@@ -134,11 +138,22 @@ def _groups(item: Item, numbers: Quantities, other: Callable[[str], LibraryEntry
         if spacing is None and (count > 1 or number < len(listed) - 1):
             raise inner.wrong("needs a spacing, first wheel to first wheel of the next")
         groups.append(Group(entry, count, spacing))
-    return tuple(groups)
+    given = ["spacing" in inner.mapping() for inner in listed]
+    return tuple(
+        group if said else replace(group, to_next=_buffer_to_buffer(group, after))
+        for group, said, after in zip(groups, given, (*groups[1:], groups[0]), strict=True)
+    )
+
+
+def _buffer_to_buffer(group: Group, after: Group) -> float | None:
+    """The spacing of a group's last vehicle to one that has another overhang; None where that is not known [m]."""
+    own, other = group.entry.front_overhang, after.entry.front_overhang
+    if group.spacing is None or own is None or other is None or own == other:
+        return None
+    return group.spacing - own + other
 
 
 def _pitch(groups: tuple[Group, ...]) -> float | None:
     """Distance to the first wheel of the next train, if all spacings are known [m]."""
-    if any(group.spacing is None for group in groups):
-        return None
-    return sum(group.count * (group.spacing or 0.0) for group in groups)
+    reaches = [group.reach for group in groups]
+    return None if None in reaches else sum(reach for reach in reaches if reach is not None)

@@ -39,7 +39,9 @@ def _consist(entry: LibraryEntry) -> list[Placement]:
     placements: list[Placement] = []
     behind = 0.0
     for group in entry.groups:
-        for inner in (train_of(group.entry),) * group.count:
-            placements += [Placement(item.vehicle, behind + item.behind) for item in inner.placements]
-            behind += group.spacing or 0.0
+        inner = train_of(group.entry)
+        for number in range(group.count):
+            begin = behind + number * (group.spacing or 0.0)
+            placements += [Placement(item.vehicle, begin + item.behind) for item in inner.placements]
+        behind += group.reach or 0.0
     return placements

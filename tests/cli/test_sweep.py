@@ -1,0 +1,135 @@
+"""``axlespan sweep``, and ``axlespan check`` of a study."""
+
+import json
+
+import pandas as pd
+import pytest
+
+STUDY = """\
+title: Two speeds
+base:
+  structure: {kind: simple-span, length: 10 m, youngs_modulus: 34 GPa, second_moment: 0.1 m^4, mass_per_length: 8 t/m,
+    elements: 6}
+  train: [{vehicle: axle-loads, loads: 100 kN}]
+  crossing: {speed: 100 km/h}
+  analysis: {time_step: 5 ms}
+  output: {sensors: {midspan: 5 m}}
+vary: {crossing.speed: [100 km/h, 150 km/h]}
+passage: {after: 0.1 s}
+"""
+
+
+@pytest.fixture
+def path(tmp_path):
+    file = tmp_path / "study.yaml"
+    file.write_text(STUDY)
+    return file
+
+
+def test_check_says_what_it_will_take(axlespan, path):
+    answer = axlespan("check", path)
+    assert answer.code == 0
+    lines = dict(line.strip().split(maxsplit=1) for line in answer.out.splitlines()[1:-1])
+    assert answer.out.startswith("Two speeds\n")
+    assert lines["scenarios"] == "2: 2 of crossing.speed"
+    assert lines["structures"] == "1 factorization"
+    assert lines["batches"].startswith("1, of up to 128")
+    assert "on one core" in lines["time"] and lines["disk"].startswith("about")
+    assert (
+        answer.out.splitlines()[-1] == f"The study is in order. Run it with: axlespan sweep {path} -o FOLDER"
+    )
+
+
+def test_a_sweep_and_what_it_writes(axlespan, path, tmp_path):
+    out = tmp_path / "out"
+    answer = axlespan("sweep", path, "-o", out)
+    assert (answer.code, answer.err) == (0, "")
+    assert "Two speeds: 2 of 2 scenarios completed, 0 failed" in answer.out
+    table = pd.read_parquet(out / "table")
+    assert table["crossing.speed"].tolist() == pytest.approx([100 / 3.6, 150 / 3.6])
+    assert (out / "line_acceleration_max.png").stat().st_size > 5000
+    assert json.loads((out / "summary.json").read_text())["completed"] == 2
+    assert (out / "study.yaml").read_text() == STUDY
+    again = axlespan("sweep", path, "-o", out)
+    assert again.code == 2
+    assert again.err == (
+        f"axlespan: {out}: holds a study already. Use --resume to compute what is missing, "
+        "or name another folder with -o\n"
+    )
+    assert axlespan("sweep", path, "-o", out, "--resume").code == 0
+
+
+def test_one_scenario_alone_is_like_a_run(axlespan, path, tmp_path):
+    assert axlespan("sweep", path, "-o", tmp_path / "all", "--no-figures").code == 0
+    answer = axlespan("sweep", path, "-o", tmp_path / "one", "--only", 1)
+    assert answer.code == 0
+    summary = json.loads((tmp_path / "one" / "summary.json").read_text())
+    row = pd.read_parquet(tmp_path / "all" / "table").iloc[1]
+    assert summary["scenario"] == {"crossing.speed": "150 km/h"}
+    assert summary["provenance"] == row["provenance"]
+    lowest = summary["sensors"]["midspan"]["displacement_min_m"]
+    assert lowest == pytest.approx(row["sensor.midspan.displacement_min_m"], rel=1e-10)
+    missing = axlespan("sweep", path, "-o", tmp_path / "no", "--only", 2)
+    assert missing.code == 2 and "scenario = 2: must be from 0 to 1" in missing.err
+    assert not (tmp_path / "no").exists()
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        (("[100 km/h, 150 km/h]", "[]"), "holds no values"),
+        (("crossing.speed: [", "crossing.sped: ["), "is no path of a case. Did you mean crossing.speed?"),
+        (("elements: 6", "elements: six"), "structure.elements = six"),
+        (("after: 0.1 s", "after: -1 s"), "passage.after = -1 s: must not be negative"),
+    ],
+)
+def test_what_is_wrong_stops_it_before_anything_is_written(axlespan, path, tmp_path, change, says):
+    path.write_text(STUDY.replace(*change))
+    for command in (("check", path), ("sweep", path, "-o", tmp_path / "out")):
+        answer = axlespan(*command)
+        assert answer.code == 2 and answer.out == ""
+        assert f"{path}:" in answer.err and says in answer.err
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["study.yaml"]
+
+
+def test_a_million_by_mistake(axlespan, path, tmp_path):
+    path.write_text(
+        STUDY.replace("[100 km/h, 150 km/h]", "{from: 100, to: 110, count: 1000000}").replace("100,", "20,")
+    )
+    answer = axlespan("sweep", path, "-o", tmp_path / "out")
+    assert answer.code == 2 and not (tmp_path / "out").exists()
+    assert "vary: makes 1000000 scenarios, about " in answer.err
+    assert "Add --yes if that is meant; axlespan check" in answer.err
+
+
+def test_a_scheduler_that_is_not_there(axlespan, path, tmp_path, monkeypatch):
+    pytest.importorskip("distributed")
+    monkeypatch.setattr("axlespan.study.sweep.on_dask.PATIENCE", 0.5)
+    answer = axlespan("sweep", path, "-o", tmp_path / "out", "--scheduler", "tcp://127.0.0.1:1")
+    assert answer.code == 2 and not (tmp_path / "out").exists()
+    assert "scheduler = 'tcp://127.0.0.1:1': does not answer; tried for" in answer.err
+
+
+def test_a_disk_that_fills_up(axlespan, path, tmp_path, monkeypatch):
+    from axlespan.study.sweep import store
+
+    write = store.write_whole
+
+    def full(place, content):
+        if place.suffix == ".parquet":
+            raise OSError(28, "No space left on device")
+        write(place, content)
+
+    monkeypatch.setattr(store, "write_whole", full)
+    answer = axlespan("sweep", path, "-o", tmp_path / "out", "--no-figures")
+    assert answer.code == 3
+    assert "the store cannot be written: No space left on device; 0 of 2 scenarios are in" in answer.err
+    monkeypatch.undo()
+    assert axlespan("sweep", path, "-o", tmp_path / "out", "--resume", "--no-figures").code == 0
+    assert len(pd.read_parquet(tmp_path / "out" / "table")) == 2
+
+
+def test_help_names_the_options(axlespan):
+    text = axlespan("sweep", "--help").out
+    for option in ("--resume", "--workers", "--scheduler", "--yes", "--only"):
+        assert option in text
