@@ -9,7 +9,7 @@ export MPLBACKEND ?= Agg
 .PHONY: demo test lint unit verify bench docs clean
 
 demo: $(VENV)/.ready
-	$(BIN)/axlespan run src/axlespan/examples/neves2012-3.1.yaml -o out/demo --force
+	$(BIN)/axlespan run src/axlespan/examples/ballasted-40m.yaml -o out/demo --force --report
 
 test: lint unit
 

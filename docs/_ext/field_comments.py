@@ -39,7 +39,9 @@ def fields_of(cls: type) -> list[FieldTold]:
         if node.target.id.startswith("_") or "ClassVar" in kind:
             continue
         default = "" if node.value is None else ast.unparse(node.value)
-        said = " ".join(comments[row] for row in range(node.lineno, (node.end_lineno or 0) + 1) if row in comments)
+        said = " ".join(
+            comments[row] for row in range(node.lineno, (node.end_lineno or 0) + 1) if row in comments
+        )
         found.append(FieldTold(node.target.id, kind, default, said))
     return found
 

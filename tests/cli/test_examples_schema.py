@@ -137,10 +137,10 @@ class TestUsage:
         answer = axlespan(option)
         assert (answer.code, answer.err) == (0, "")
         listed = re.findall(r"^  (\w+) {2,}(.*)$", answer.out.split("Commands:")[1], re.M)
-        assert {"run", "check", "modes", "examples", "schema", "verify"} <= {name for name, _ in listed}
+        assert {"run", "sweep", "check", "modes", "examples", "schema", "verify"} <= {name for name, _ in listed}
         assert all(text.endswith(".") and not text.endswith("..") for _, text in listed), "no line is cut off"
 
-    @pytest.mark.parametrize("command", ["run", "check", "modes", "examples", "schema", "verify"])
+    @pytest.mark.parametrize("command", ["run", "sweep", "check", "modes", "examples", "schema", "verify"])
     def test_help_of_commands(self, axlespan, command):
         answer = axlespan(command, "--help")
         assert (answer.code, answer.err) == (0, "")

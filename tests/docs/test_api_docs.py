@@ -19,8 +19,8 @@ if EXTENSIONS not in sys.path:
 import field_comments
 import made_api
 
-# A unit in brackets, or words that say that a number has none.
-UNIT = re.compile(r"\[[^\]]+\]|factor|share|dimensionless|number of|fraction|of the spectrum|exponent", re.IGNORECASE)
+# A unit in brackets, words that say that a number has none, or where else it is told.
+UNIT = re.compile(r"\[[^\]]+\]|\b(factor|share|exponent|numbers? of|as (in|for) :)", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -117,14 +117,18 @@ def test_functions_tell_their_parameters(item):
 
 @pytest.mark.parametrize("item", CLASSES, ids=lambda item: item.name)
 def test_classes_tell_their_fields(item):
-    if not is_dataclass(item.thing) or "__init__" in vars(item.thing) and not is_dataclass(item.thing):
+    if not is_dataclass(item.thing):
+        if getattr(item.thing, "_is_protocol", False):
+            return
+        if "__init__" in vars(item.thing) and not issubclass(item.thing, BaseException):
+            assert set(parameters(item.thing)) <= set(entries(item.doc, "Parameters"))
         return
-    told = entries(item.doc, "Parameters")
+    told = entries(item.doc, "Parameters") or entries(item.doc, "Attributes")
     for field in field_comments.fields_of(item.thing):
         text = told.get(field.name, "") if told else field.comment
         if is_number(field.type):
             assert UNIT.search(text), f"{field.name}: no unit: {text!r}"
-        if told:
+        if entries(item.doc, "Parameters"):
             assert text, f"{field.name} is not told"
 
 

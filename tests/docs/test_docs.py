@@ -93,7 +93,9 @@ def test_the_tutorial_works_as_written(tmp_path):
     assert "not assessed" in outcomes  # forces have no car bodies
     # With vehicles in place of forces, by the edit that it describes.
     text = (tmp_path / "bridge.yaml").read_text(encoding="utf-8")
-    (tmp_path / "vehicles.yaml").write_text(text.replace("vehicle: hslm-a5", "vehicle: ice3"), encoding="utf-8")
+    (tmp_path / "vehicles.yaml").write_text(
+        text.replace("vehicle: hslm-a5", "vehicle: ice3"), encoding="utf-8"
+    )
     assert command("axlespan check vehicles.yaml", tmp_path).returncode == 0
 
 

@@ -242,6 +242,11 @@ class TestOwnFiles:
             ("pitch: 12 m", "length: 12 m\noverhang: 5 m", r"wagon\.yaml:7:11: overhang = '5 m': must be between 0 and 3 m"),
             ("pitch: 12 m", "overhang: 1 m", r"wagon\.yaml:6:11: overhang = '1 m': needs a length"),
             ("pitch: 12 m", "stated: {axle_loads: 160 kN, tolerance: -1 %}", "tolerance = '-1 %': must be positive"),
+            (
+                "  - {mass: 1.5 t, positions: [0 m, 9 m]}",
+                "  - {mass: 1.5 t, position: 0 m}\n  - {mass: 1.5 t, position: 9 m, gauge: 1.5 m, roll_inertia: 90 kg m^2}",
+                r"wagon\.yaml:10:5: wheels\.0\.gauge: is missing: other wheels have one",
+            ),
             ("pitch: 12 m", "notes: &n [*n]", "is nested too deeply|found undefined alias"),
             ("pitch: 12 m", "<<: 3", r"wagon\.yaml:6:1: <<: must be followed by one alias of a mapping"),
             ("title: My wagon", "title: [", r"wagon\.yaml:2:1: is no YAML|wagon\.yaml:\d+:\d+: is no YAML"),

@@ -66,8 +66,7 @@ def frame(
 ) -> Structure:
     """A deck on columns: portal frames, integral bridges, viaducts.
 
-    Parameters are those of :func:`~axlespan.bridges.continuous_beam`; the deck has axial stiffness, so ``area`` is
-    needed.
+    The deck has axial stiffness, so ``area`` is needed.
 
     Parameters
     ----------
@@ -76,6 +75,10 @@ def frame(
     supports : sequence of SupportAt
         Other supports of the deck: bearings on abutments, springs of the soil behind an integral abutment. None
         by default.
+    spans, youngs_modulus, second_moment, mass_per_length, elements
+        Of the deck, as for :func:`~axlespan.bridges.continuous_beam`.
+    area, shear_area, poisson_ratio, damping, stations, name
+        Likewise.
 
     Raises
     ------

@@ -105,6 +105,8 @@ def beam_grid(
     bearing_stiffness, bearing_damping : float, optional
         Of each bearing [N/m], [N s/m]; rigid when left out.
     damping : Rayleigh or Modal, optional
+    name : str
+        Of the structure.
 
     Raises
     ------

@@ -35,14 +35,18 @@ def simple_spans(
 ) -> Structure:
     """Simply supported decks in a row; properties are common or given span by span.
 
-    Over each pier two deck ends meet, each on a bearing of its own; rails of a track go on over them. Parameters
-    are those of :func:`~axlespan.bridges.continuous_beam`; the bearings are called ``span1.left``,
+    Over each pier two deck ends meet, each on a bearing of its own; rails of a track go on over them. The bearings
+    are called ``span1.left``,
     ``span1.right``, ``span2.left``, …
 
     Parameters
     ----------
     bearing_stiffness, bearing_damping : float, optional
         Of each bearing, vertically [N/m], [N s/m]; rigid when left out.
+    spans, youngs_modulus, second_moment, mass_per_length, elements
+        As for :func:`~axlespan.bridges.continuous_beam`.
+    area, shear_area, poisson_ratio, damping, stations, name
+        Likewise.
 
     Raises
     ------

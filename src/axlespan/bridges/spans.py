@@ -21,12 +21,12 @@ from axlespan.running.structure import MAIN_LINE, Structure
 class SupportAt:
     """A support at a position [m] along the beam; see :meth:`axlespan.model.model.Model.with_support`."""
 
-    position: float
+    position: float  # [m]
     fixed: Sequence[str] | None = None  # z, unless it is elastic or moved
-    stiffness: Mapping[str, float] | None = None
-    damping: Mapping[str, float] | None = None
-    motion: Mapping[str, Motion] | None = None
-    name: str | None = None
+    stiffness: Mapping[str, float] | None = None  # by component, to the ground [N/m], [N m/rad]
+    damping: Mapping[str, float] | None = None  # [N s/m], [N m s/rad]
+    motion: Mapping[str, Motion] | None = None  # displacement over time, by component [m], [rad]
+    name: str | None = None  # support1, support2, … when left out
 
 
 def simple_span(
@@ -69,6 +69,8 @@ def simple_span(
         too, and rotational springs of integral abutments (``stiffness={"z": ..., "ry": ...}``).
     stations : sequence of Station, optional
         Second moment and mass per length where they vary along the beam, in place of those above.
+    name : str
+        Of the structure.
 
     Raises
     ------
@@ -108,8 +110,36 @@ def continuous_beam(
 ) -> Structure:
     """A beam over several spans; properties are common or given span by span.
 
-    Parameters are those of :func:`simple_span`, with ``spans`` [m] from left to right and
-    ``elements`` per span. The supports are called ``left``, ``support2``, …, ``right``.
+    The supports are called ``left``, ``support2``, …, ``right``.
+
+    Parameters
+    ----------
+    spans : sequence of float
+        From left to right [m].
+    youngs_modulus, poisson_ratio : float or sequence of float
+        E [Pa] and ν [-]; ν matters with a shear area only.
+    second_moment : float or sequence of float
+        For vertical bending [m^4].
+    mass_per_length : float or sequence of float
+        [kg/m].
+    elements : int or sequence of int
+        Of each span.
+    area : float or sequence of float, optional
+        [m^2]; with it there are d.o.f. along x.
+    shear_area : float or sequence of float, optional
+        [m^2]; without it the beam does not shear.
+    damping : Rayleigh or Modal, optional
+    supports : sequence of SupportAt, optional
+        In place of a pin at each end of a span.
+    stations : sequence of Station, optional
+        Second moment and mass per length where they vary along the beam [m, m^4, kg/m].
+    name : str
+        Of the structure.
+
+    Raises
+    ------
+    InputError
+        If a value is not positive, lists have other lengths than the spans, or a support is not on the beam.
     """
     girder = girder_of(
         spans=spans,

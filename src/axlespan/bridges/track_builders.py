@@ -54,7 +54,7 @@ def ballasted_track(
     shear_stiffness, shear_damping : float, optional
         Between neighboring ballast masses [N/m], [N s/m].
     deck_ballast_stiffness, deck_ballast_damping : float, optional
-        Of the ballast on a deck, where it is thinner or lies on a mat; as on the ground when left out.
+        Of the ballast on a deck, where it is thinner or lies on a mat [N/m], [N s/m]; as on the ground when left out.
 
     Raises
     ------
@@ -148,6 +148,11 @@ def slab_track(
         Of the layer between slab and deck, per length [N/m^2], [N s/m^2].
     panel_length : float, optional
         Of slabs with joints [m]; a slab always ends at the ends of a deck.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range or the preset is unknown.
     """
     given = {
         "fastening_spacing": fastening_spacing,

@@ -72,6 +72,12 @@ def least_approach(track: Track, run_in: float = RUN_IN) -> float:
 
     The run-in, then ten characteristic lengths 1/β: the trough of a wheel on the run-in has faded there to
     e^-10 of its depth.
+
+    Parameters
+    ----------
+    track : Track
+    run_in : float
+        Length at the far end over which the track grows soft [m].
     """
     return run_in + PLAIN * track.characteristic_length
 
@@ -81,6 +87,12 @@ def usual_approach(track: Track, run_in: float = RUN_IN) -> float:
 
     25 m is 0.3 s at 300 km/h: the oscillation of a bogie on its primary springs (5 to 8 Hz, a fifth of
     critical) has faded by then to a tenth of what little the run-in excites.
+
+    Parameters
+    ----------
+    track : Track
+    run_in : float
+        Length at the far end over which the track grows soft [m].
     """
     return ceil(least_approach(track, run_in) + SETTLING)
 

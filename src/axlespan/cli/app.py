@@ -104,7 +104,7 @@ def sweep(
     ] = None,
     figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw figures.")] = True,
 ) -> None:
-    """Simulate all scenarios of a study: writes a table, histories and figures."""
+    """Simulate all scenarios of a study into a folder."""
     from axlespan.cli.sweep import Wanted, run_sweep
 
     raise typer.Exit(run_sweep(study, output, Wanted(resume, workers, scheduler, yes, figures, only)))
@@ -112,7 +112,7 @@ def sweep(
 
 @app.command()
 def check(case: _CASE) -> None:
-    """Read and build a case or a study without running it, and say what it is."""
+    """Say what a case or a study is, without running it."""
     from axlespan.cli.check import check_case
 
     raise typer.Exit(check_case(case))
@@ -244,7 +244,7 @@ def init(
 
 @app.command()
 def doctor() -> None:
-    """Say what is installed, which solver would be used, and how fast this machine is."""
+    """Say what is installed, and how fast this machine is."""
     from axlespan.cli.doctor import look
 
     raise typer.Exit(look())

@@ -15,9 +15,9 @@ class Alpha:
     Parameters
     ----------
     alpha : float
-        -1/3 <= α <= 0; negative values damp what the time step cannot resolve.
+        -1/3 <= α <= 0 [-]; negative values damp what the time step cannot resolve.
     beta, gamma : float, optional
-        Newmark's parameters; β = (1 - α)²/4 and γ = ½ - α when left out, which is second order
+        Newmark's parameters [-]; β = (1 - α)²/4 and γ = ½ - α when left out, which is second order
         and unconditionally stable.
 
     Raises

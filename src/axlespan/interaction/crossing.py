@@ -195,9 +195,9 @@ class Crossing(Shown, Movement):
         return {name: own.get(self.line_name(name), even) for name in lines}
 
     def line_name(self, name: str) -> str:
-        """Name of a line as the structure has it: the main line may be one of another name."""
-        self.structure.line(name)
-        return name if name in self.structure.lines else next(iter(self.structure.lines))
+        """First name of a line in the structure: one line may have several names, as the rails of a track in the plane."""
+        path = self.structure.line(name)
+        return next(other for other, line in self.structure.lines.items() if line is path)
 
     @property
     def train_names(self) -> str:

@@ -55,21 +55,21 @@ class Result(Shown):
     """What a crossing gave, at the times kept."""
 
     time: FloatArray  # (n_time,) [s]
-    sensor: tuple[str, ...]
-    contact: tuple[str, ...]
-    vehicle_dof: tuple[str, ...]
-    support: tuple[str, ...]
+    sensor: tuple[str, ...]  # names, as given
+    contact: tuple[str, ...]  # names, vehicle.wheel: 1.1
+    vehicle_dof: tuple[str, ...]  # names, vehicle.part.component: 1.body.z
+    support: tuple[str, ...]  # names, support.component: left.z
     sensor_displacement: FloatArray  # (n_time, n_sensor) [m]
-    sensor_velocity: FloatArray
-    sensor_acceleration: FloatArray
+    sensor_velocity: FloatArray  # (n_time, n_sensor) [m/s]
+    sensor_acceleration: FloatArray  # (n_time, n_sensor) [m/s^2]
     contact_force: FloatArray  # (n_time, n_contact) [N]
     contact_position: FloatArray  # (n_time, n_contact) [m]
     vehicle_displacement: FloatArray  # (n_time, n_vehicle_dof) [m or rad]
-    vehicle_velocity: FloatArray
-    vehicle_acceleration: FloatArray
+    vehicle_velocity: FloatArray  # (n_time, n_vehicle_dof) [m/s or rad/s]
+    vehicle_acceleration: FloatArray  # (n_time, n_vehicle_dof) [m/s^2 or rad/s^2]
     support_reaction: FloatArray  # (n_time, n_support) [N or N m]
-    outcome: Outcome
-    checks: Mapping[str, Any] = field(default_factory=dict)
+    outcome: Outcome  # code and message
+    checks: Mapping[str, Any] = field(default_factory=dict)  # self-checks, as in summary.json
     facts: Mapping[str, Any] = field(default_factory=dict)  # about the run: sizes, solver, timing, notes
     section: tuple[str, ...] = ()  # sensors at which section forces of beams are kept
     section_moment: FloatArray = field(default_factory=_none)  # (n_time, n_section) [N m]

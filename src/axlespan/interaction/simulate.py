@@ -209,6 +209,10 @@ def simulate_many(
         follow from all trains together.
     threads : int, optional
         As for :func:`simulate`; with other solvers than PARDISO the crossings are shared among so many threads.
+    method, sensors, footprint, sleepers, solver, every, fields, section_forces, stresses, envelopes : optional
+        As for :func:`simulate`.
+    basis, basis_tolerance, line_points, contact, lost_after : optional
+        As for :func:`simulate`.
 
     Returns
     -------

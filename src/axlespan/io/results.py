@@ -175,6 +175,11 @@ def _storage(shape: tuple[int, ...]) -> dict[str, Any]:
 def read_result(path: str | PathLike[str]) -> Result:
     """Read a result that :func:`write_result` wrote; that of a failed run too.
 
+    Parameters
+    ----------
+    path : path
+        ``result.nc``.
+
     Raises
     ------
     InputError

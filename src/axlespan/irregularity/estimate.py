@@ -44,7 +44,13 @@ class PsdEstimate:
         return float(np.sqrt(np.sum(self.psd * np.maximum(high - low, 0.0))))
 
     def as_spectrum(self, name: str, wavelengths: tuple[float, float] | None = None) -> Spectrum:
-        """Return the estimate as a spectrum to realize, within wavelengths [m] or all but the mean."""
+        """Return the estimate as a spectrum to realize, within wavelengths [m] or all but the mean.
+
+        Raises
+        ------
+        InputError
+            If they hold fewer than two frequencies of the estimate.
+        """
         keep = self.n > 0.0
         if wavelengths is not None:
             shortest, longest = band_of(wavelengths)

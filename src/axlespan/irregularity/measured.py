@@ -106,7 +106,15 @@ class Measurement:
 
     @classmethod
     def interpolated(cls, x: ArrayLike, r: ArrayLike, spacing: float) -> Measurement:
-        """Return a measurement at equal distances from points at unequal ones, by a natural cubic spline."""
+        """Return a measurement at equal distances from points at unequal ones, by a natural cubic spline.
+
+        Parameters
+        ----------
+        x, r : array (n,)
+            Positions, increasing, and heights [m].
+        spacing : float
+            Of the new points [m].
+        """
         require_positive(spacing=spacing)
         spline = Spline(np.asarray(x, dtype=np.float64), np.asarray(r, dtype=np.float64))
         count = math.floor((spline.x[-1] - spline.x[0]) / spacing * (1.0 + 1e-12)) + 1
@@ -126,7 +134,13 @@ class Measurement:
         return self.spacing * (self.values.size - 1)
 
     def detrended(self, degree: int = 1) -> Measurement:
-        """Return the profile without its least-squares polynomial: 0 the mean, 1 a line, 2 a curve."""
+        """Return the profile without its least-squares polynomial: 0 the mean, 1 a line, 2 a curve.
+
+        Raises
+        ------
+        InputError
+            If the degree is not a whole number from 0 to 10.
+        """
         if degree not in range(0, 11):
             raise InputError("must be a whole number from 0 to 10", field="degree", value=degree)
         u = np.linspace(-1.0, 1.0, self.values.size)
@@ -179,6 +193,11 @@ class Measurement:
 
         Before thinning out, waves that the new samples can't carry are taken away by a zero-phase low-pass
         with its corner at 0.4 of the new sampling frequency.
+
+        Raises
+        ------
+        InputError
+            If the spacing is not positive, or too coarse for the length.
         """
         require_positive(spacing=spacing)
         values = self.values
@@ -204,7 +223,13 @@ class Measurement:
         return {name: float(np.std(self.filtered(band).values)) for name, band in fits.items()}
 
     def psd(self, segment: float | None = None) -> PsdEstimate:
-        """Return the density estimated by Welch's method; see `estimate_psd`."""
+        """Return the density estimated by Welch's method; see `estimate_psd`.
+
+        Parameters
+        ----------
+        segment : float, optional
+            Length of the segments [m].
+        """
         return estimate_psd(self.values, self.spacing, segment=segment)
 
     def table(self) -> Table:

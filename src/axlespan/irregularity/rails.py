@@ -53,10 +53,15 @@ def realize_pair(
         Seed.
     cross_level : Spectrum, optional
         Spectrum of the cross level, a height difference or an angle; that of the family when a name is given.
-    wavelengths, method, spacing
-        As for `realize`; the common range of both spectra when wavelengths is left out.
+    wavelengths, method, spacing : optional
+        As for `realize` [m]; the common range of both spectra when wavelengths is left out.
     base : float
         Distance of the contact points [m] that turns an angle into a height difference.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or a spectrum is not of the quantity that is asked for.
     """
     if cross_level is None:
         if not isinstance(vertical, str):

@@ -22,7 +22,13 @@ class Rayleigh:
 
     @classmethod
     def from_ratio(cls, ratio: float, frequencies: tuple[float, float]) -> Rayleigh:
-        """Give the same damping ratio [-] at two frequencies [Hz]."""
+        """Give the same damping ratio [-] at two frequencies [Hz].
+
+        Raises
+        ------
+        InputError
+            If the frequencies are not two different positive ones, or the ratio is negative.
+        """
         require_positive(ratio, "damping.ratio", zero=True)
         if len(frequencies) != 2:
             raise InputError("must be two frequencies", field="damping.frequencies", value=tuple(frequencies))

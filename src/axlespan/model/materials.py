@@ -68,7 +68,17 @@ class BeamSection:
             require_positive(getattr(self, name), name, zero=True)
 
     def properties(self, material: Material) -> BeamProperties:
-        """Stiffness and mass of a beam of this section and material."""
+        """Stiffness and mass of a beam of this section and material.
+
+        Parameters
+        ----------
+        material : Material
+
+        Raises
+        ------
+        InputError
+            If rotary inertia is asked for without an area.
+        """
         shear_modulus, modulus = material.shear_modulus, material.youngs_modulus
         mass = material.density * (self.area or 0.0) if self.mass_per_length is None else self.mass_per_length
         with_rotary = self.shear_area is not None if self.rotary_inertia is None else self.rotary_inertia

@@ -78,7 +78,20 @@ class Model(Shown):
     # --- nodes -------------------------------------------------------------------------------
 
     def with_nodes(self, points: npt.ArrayLike, names: Sequence[str] | None = None) -> Model:
-        """Append nodes at points (n, 3), or (n, 2) as x and z; the first ones get the names given."""
+        """Append nodes at points (n, 3), or (n, 2) as x and z; the first ones get the names given.
+
+        Parameters
+        ----------
+        points : array (n, 3) or (n, 2)
+            Coordinates [m].
+        names : sequence of str, optional
+            Of the first nodes.
+
+        Raises
+        ------
+        InputError
+            If coordinates are not finite, have y in a plane model, or a name is taken.
+        """
         new = np.atleast_2d(np.asarray(points, float))
         if new.shape[1] == 2:
             new = np.column_stack([new[:, 0], np.zeros(len(new)), new[:, 1]])
@@ -163,7 +176,18 @@ class Model(Shown):
     # --- parts -------------------------------------------------------------------------------
 
     def with_part(self, part: Part) -> Model:
-        """Append a part."""
+        """Append a part.
+
+        Parameters
+        ----------
+        part : Part
+            Elements with their nodes and components; see :mod:`axlespan.model.parts`.
+
+        Raises
+        ------
+        InputError
+            If it names nodes that the model does not have.
+        """
         nodes = np.asarray(part.nodes)
         if nodes.size and (nodes.min() < 0 or nodes.max() >= len(self.points)):
             raise InputError(
@@ -203,6 +227,19 @@ class Model(Shown):
         """Append beams between pairs of nodes (n_element, 2), or beside them by an offset (3,) [m].
 
         In a plane model, beams without axial stiffness have no d.o.f. along x.
+
+        Parameters
+        ----------
+        nodes : array (n_element, 2)
+            Numbers of the end nodes.
+        properties : BeamProperties
+            Stiffness and mass, as from :meth:`BeamSection.properties`.
+        name : str
+            Of the part.
+        up : array (3,) or (n_element, 3), optional
+            A direction [-] in the plane of vertical bending, the local x-z plane; found when left out.
+        offset : array (3,) or (n_element, 3), optional
+            From the nodes to the axis of the beams [m].
         """
         components: tuple[str, ...] = COMPONENTS
         if self.plane:
@@ -220,7 +257,19 @@ class Model(Shown):
         *,
         name: str = "bars",
     ) -> Model:
-        """Append bars between pairs of nodes (n_element, 2): EA [N], mass [kg/m]."""
+        """Append bars between pairs of nodes (n_element, 2): EA [N], mass [kg/m].
+
+        Parameters
+        ----------
+        nodes : array (n_element, 2)
+            Numbers of the end nodes.
+        axial_stiffness : float or array (n_element,)
+            EA [N].
+        mass_per_length : float or array (n_element,)
+            [kg/m].
+        name : str
+            Of the part.
+        """
         pairs = _pairs(nodes)
         n = (len(pairs),)
         part = BarPart(
@@ -240,7 +289,17 @@ class Model(Shown):
         *,
         name: str = "springs",
     ) -> Model:
-        """Append springs and dashpots between pairs of nodes, by component: ``{"z": 1.6e6}``."""
+        """Append springs and dashpots between pairs of nodes, by component: ``{"z": 1.6e6}``.
+
+        Parameters
+        ----------
+        nodes : array (n_spring, 2)
+            Numbers of the end nodes.
+        stiffness, damping : mapping of component to float, optional
+            [N/m] and [N s/m]; of rotations [N m/rad] and [N m s/rad].
+        name : str
+            Of the part.
+        """
         k, c = dict(stiffness or {}), dict(damping or {})
         components = tuple(part for part in COMPONENTS if part in k or part in c)
         component_indices(tuple({*k, *c}))
@@ -267,11 +326,20 @@ class Model(Shown):
         Parameters
         ----------
         nodes : array (n_spring, 2)
-            The elongation is the second one's displacement less the first one's.
+            Numbers of the end nodes; the elongation is the second one's displacement less the first one's.
         law : SpringLaw
             See :mod:`axlespan.model.nonlinear`.
         gap : float or array (n_spring,)
             Added to the elongation [m]: a spring that only pushes touches when it is shortened by its gap.
+        component : str
+            Along which they act.
+        name : str
+            Of the part.
+
+        Raises
+        ------
+        InputError
+            If the component is unknown, or a gap is not finite.
         """
         component_indices((component,))
         pairs = _pairs(nodes)
@@ -292,6 +360,18 @@ class Model(Shown):
         """Append a point mass [kg] with rotary inertia by component [kg m^2]: ``{"ry": 2e6}``.
 
         The mass moves in all directions of the model unless ``directions`` names some of them.
+
+        Parameters
+        ----------
+        node : int or str
+        mass : float
+            [kg].
+        inertia : mapping of component to float, optional
+            Rotary inertia [kg m^2].
+        directions : sequence of str, optional
+            Directions in which the mass acts.
+        name : str
+            Of the part.
         """
         moments = dict(inertia or {})
         require_positive(mass, "mass", zero=True)
@@ -324,7 +404,17 @@ class Model(Shown):
     def with_rigid_link(
         self, master: int | str, slaves: Sequence[int | str], components: Sequence[str] | None = None
     ) -> Model:
-        """Bind nodes to a master node as one rigid body (small rotations): u + θ × arm."""
+        """Bind nodes to a master node as one rigid body (small rotations): u + θ × arm.
+
+        Parameters
+        ----------
+        master : int or str
+            Node that leads.
+        slaves : sequence of int or str
+            Nodes that follow.
+        components : sequence of str, optional
+            Those that follow; all that the model has when left out.
+        """
         chosen = tuple(components or (_PLANE if self.plane else COMPONENTS))
         ties, head = list(self.ties), self.node(master)
         for reference in slaves:
@@ -355,6 +445,18 @@ class Model(Shown):
 
         Elastic components stand on a ground node of their own, so that their reactions are reported
         too; a motion of an elastic component moves that ground.
+
+        Parameters
+        ----------
+        node : int or str
+        fixed : sequence of str
+            Components that are held.
+        stiffness, damping : mapping of component to float, optional
+            To the ground [N/m], [N s/m]; of rotations [N m/rad], [N m s/rad].
+        motion : mapping of component to Motion, optional
+            Displacements over time [m], [rad]; see :mod:`axlespan.model.motions`.
+        name : str, optional
+            Of the support; ``support1``, ``support2``, ... when left out.
         """
         index = self.node(node)
         return self.with_supports(
@@ -379,6 +481,18 @@ class Model(Shown):
         """Support each node of a set, or of several, alike; see :meth:`with_support`.
 
         The supports of several nodes are called ``name.node``; the name is that of the set by default.
+
+        Parameters
+        ----------
+        nodes : str or sequence of int or str
+            Name of a set, or nodes.
+        fixed, stiffness, damping, motion, name
+            As in :meth:`with_support`.
+
+        Raises
+        ------
+        InputError
+            If there is no node, or a support is named or held twice.
         """
         indices, moved = self.nodes_of(nodes), dict(motion or {})
         elastic = {*(stiffness or {}), *(damping or {})}
@@ -427,7 +541,18 @@ class Model(Shown):
         amount: float,
         history: Callable[[FloatArray], FloatArray] | None = None,
     ) -> Model:
-        """Append a force [N] or moment [N m] at a node."""
+        """Append a force [N] or moment [N m] at a node.
+
+        Parameters
+        ----------
+        node : int or str
+        component : str
+            Where it acts: "z", "ry", ...
+        amount : float
+            [N] or [N m], positive with the axis.
+        history : callable, optional
+            Factor [-] of the time [s]; constant when left out.
+        """
         component_indices((component,))
         return replace(
             self, loads=(*self.loads, NodalLoad(self.node(node), component, float(amount), history))

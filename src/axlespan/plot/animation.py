@@ -67,8 +67,9 @@ def animation(
     exaggeration : float, optional
         Factor of displacements; one that shows the largest deflection well when left out.
     speed : float
-        Of the film: 0.25 shows the crossing four times slower.
+        Factor of the film's speed: 0.25 shows the crossing four times slower.
     frames_per_second : int
+        1 to 100.
     window : (float, float), optional
         Positions shown [m]; the structure and a fifth of it on both sides when left out.
     dpi : int

@@ -75,6 +75,11 @@ def _bodies(result: Result) -> list[str]:
 def save(figures: Mapping[str, Figure], folder: str | PathLike[str]) -> list[Path]:
     """Write figures as ``folder/name.png`` and close them; the folder is made if it is not there.
 
+    Parameters
+    ----------
+    figures : mapping of name to Figure
+    folder : path
+
     Raises
     ------
     OSError

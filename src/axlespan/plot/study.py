@@ -37,6 +37,20 @@ def over_speed(answers: Answers, quantity: str, ax: Axes | None = None) -> Axes:
     """The worst of a quantity over the speed, for each train; resonance speeds of the worst train as lines.
 
     Many trains are a band, with the worst of them on top.
+
+    Parameters
+    ----------
+    answers : Answers
+        From :meth:`axlespan.Study.answers`.
+    quantity : str
+        A column of the table of scenarios: one of ``answers.quantities``.
+    ax : Axes, optional
+        Drawn into; a new pyplot figure when left out.
+
+    Raises
+    ------
+    InputError
+        If there is no such quantity.
     """
     ax = axes_or_new(ax)
     what, unit, scale = label_of(quantity)
@@ -96,7 +110,22 @@ def _mark_resonances(ax: Axes, answers: Answers, train: str) -> None:
 
 
 def exceedance(answers: Answers, quantity: str, ax: Axes | None = None) -> Axes:
-    """Share of the population above each value, on a logarithmic scale, with its standard error."""
+    """Share of the population above each value, on a logarithmic scale, with its standard error.
+
+    Parameters
+    ----------
+    answers : Answers
+        From :meth:`axlespan.Study.answers`.
+    quantity : str
+        A column of the table of scenarios: one of ``answers.quantities``.
+    ax : Axes, optional
+        Drawn into; a new pyplot figure when left out.
+
+    Raises
+    ------
+    InputError
+        If there is no such quantity.
+    """
     ax = axes_or_new(ax)
     what, unit, scale = label_of(quantity)
     values = answers.distribution(quantity).values * scale
@@ -114,7 +143,22 @@ def exceedance(answers: Answers, quantity: str, ax: Axes | None = None) -> Axes:
 
 
 def converging(answers: Answers, quantity: str, ax: Axes | None = None) -> Axes:
-    """Mean of the first scenarios with its standard error, over their number."""
+    """Mean of the first scenarios with its standard error, over their number.
+
+    Parameters
+    ----------
+    answers : Answers
+        From :meth:`axlespan.Study.answers`.
+    quantity : str
+        A column of the table of scenarios: one of ``answers.quantities``.
+    ax : Axes, optional
+        Drawn into; a new pyplot figure when left out.
+
+    Raises
+    ------
+    InputError
+        If there is no such quantity.
+    """
     ax = axes_or_new(ax)
     what, unit, scale = label_of(quantity)
     values = np.asarray(answers.columns[quantity], dtype=np.float64)[answers.completed]
@@ -128,7 +172,12 @@ def converging(answers: Answers, quantity: str, ax: Axes | None = None) -> Axes:
 
 
 def study_figures(answers: Answers) -> dict[str, Figure]:
-    """The figures of a study: envelopes over speed where it varies; distributions of random studies."""
+    """The figures of a study: envelopes over speed where it varies; distributions of random studies.
+
+    Parameters
+    ----------
+    answers : Answers
+    """
     figures: dict[str, Figure] = {}
     speeds = answers.columns["speed_m_per_s"][answers.completed]
     drawn = [name for name in _DRAWN if name in answers.varying]
@@ -154,7 +203,14 @@ def _file(quantity: str) -> str:
 
 
 def draw_study(answers: Answers, folder: str | PathLike[str]) -> list[str]:
-    """Save the figures of a study as PNG files; returns their names."""
+    """Save the figures of a study as PNG files; returns their names.
+
+    Parameters
+    ----------
+    answers : Answers
+    folder : path
+        Where the files go.
+    """
     names = []
     for name, figure in study_figures(answers).items():
         figure.savefig(Path(folder) / f"{name}.png", dpi=DPI)

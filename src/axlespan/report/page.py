@@ -68,7 +68,13 @@ def write_report(folder: str | PathLike[str], page: str | PathLike[str] | None =
 
 
 def result_page(folder: str | PathLike[str]) -> str:
-    """The page of a stored result or study as text; see :func:`write_report`."""
+    """The page of a stored result or study as text; see :func:`write_report`.
+
+    Parameters
+    ----------
+    folder : path
+        Of a result or a study.
+    """
     if is_study(Path(folder)):
         from axlespan.report.study_page import study_page
 

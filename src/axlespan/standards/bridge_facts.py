@@ -63,7 +63,13 @@ class BridgeFacts:
 
 
 def bridge_facts(structure: Structure, assessment: Assessment) -> BridgeFacts:
-    """Spans, frequencies and damping of a structure; what the assessment says of them goes before."""
+    """Spans, frequencies and damping of a structure; what the assessment says of them goes before.
+
+    Parameters
+    ----------
+    structure : Structure
+    assessment : Assessment
+    """
     path = deck_line(structure)
     found = _spans_of(structure) if assessment.spans is None else _laid_out(assessment.spans, path.start)
     missing = "" if found.spans else "the spans are not known: give spans"

@@ -29,16 +29,16 @@ class Verdict:
     check: str  # its name in case files: deck_acceleration
     clause: str  # EN 1990 A2.4.4.2.1
     quantity: str  # in words
-    outcome: str
-    value: float | None = None
-    limit: float | None = None
-    unit: str = ""
+    outcome: str  # pass, fail, reported, not assessed
+    value: float | None = None  # [unit]
+    limit: float | None = None  # [unit]
+    unit: str = ""  # SI: m/s^2
     at_least: bool = False  # whether the limit is the smallest value that passes
     reason: str = ""  # why it was not assessed
-    where: str = ""
+    where: str = ""  # place, in words
     when: float | None = None  # [s]
     source: str = ""  # where the limit comes from, and how sure it is
-    note: str = ""
+    note: str = ""  # how it was found
 
     def __post_init__(self) -> None:
         if self.outcome not in OUTCOMES:
@@ -111,13 +111,24 @@ def not_assessed(check: str, clause: str, quantity: str, reason: str, *, source:
 
 
 def overall(verdicts: Iterable[Verdict]) -> str:
-    """All verdicts in one word: fail if one fails, pass if one passes and none fails, else not assessed."""
+    """All verdicts in one word: fail if one fails, pass if one passes and none fails, else not assessed.
+
+    Parameters
+    ----------
+    verdicts : iterable of Verdict
+    """
     outcomes = {verdict.outcome for verdict in verdicts}
     return FAIL if FAIL in outcomes else PASS if PASS in outcomes else NOT_ASSESSED
 
 
 def envelope(runs: Iterable[Iterable[Verdict]]) -> tuple[Verdict, ...]:
-    """The worst verdict on each check over several runs, such as all speeds of a sweep; see :func:`worst`."""
+    """The worst verdict on each check over several runs, such as all speeds of a sweep; see :func:`worst`.
+
+    Parameters
+    ----------
+    runs : iterable of iterables of Verdict
+        Verdicts of each run.
+    """
     by_check: dict[str, list[Verdict]] = {}
     for run in runs:
         for verdict in run:
@@ -129,6 +140,11 @@ def worst(verdicts: Iterable[Verdict]) -> Verdict:
     """The verdict of several runs on one check: the one with the highest utilization.
 
     Verdicts that could not be given count only if none could.
+
+    Parameters
+    ----------
+    verdicts : iterable of Verdict
+        On one check.
 
     Raises
     ------

@@ -74,6 +74,8 @@ def _profile(case: Case) -> Profile:
     if case is None or isinstance(case, NoIrregularity):
         return profiles.Smooth()
     if isinstance(case, HarmonicIrregularity):
+        if case.taper:
+            return _bounded(profiles.Harmonic(case.amplitude, case.wavelength, case.phase), case)
         return profiles.Harmonic(case.amplitude, case.wavelength, case.phase, case.from_, case.to)
     if isinstance(case, TableIrregularity):
         table: Profile
@@ -85,15 +87,24 @@ def _profile(case: Case) -> Profile:
             table = profiles.Table.from_csv(case.file)
         return _bounded(table, case)
     assert isinstance(case, SpectrumIrregularity)
-    shape = profiles.spectrum(case.name)
+    shape = _spectrum(case)
     band = _band(case) or shape.wavelengths
     with _blaming_the_band(case):
         made = profiles.realize(shape, _length(case, band), seed=case.seed, wavelengths=band)
     return _finished(made, case)
 
 
+def _spectrum(case: SpectrumIrregularity) -> profiles.Spectrum:
+    """The spectrum by its name, or from its file."""
+    if case.file is not None:
+        return profiles.read_spectrum(case.file)
+    assert case.name is not None  # the schema asks for one of the two
+    return profiles.spectrum(case.name)
+
+
 def _rails(case: SpectrumIrregularity, rails: tuple[str, ...]) -> dict[str, Profile]:
     """Profiles of the two rails, correlated through level and cross level."""
+    assert case.name is not None  # a file holds no cross level
     level, cross = profiles.spectrum(case.name), profiles.spectrum(case.name, "cross level")
     both = (level.wavelengths, cross.wavelengths)
     band = _band(case) or (max(low for low, _ in both), min(high for _, high in both))
@@ -134,4 +145,4 @@ def _finished(profile: Profile, case: SpectrumIrregularity) -> Profile:
 def _bounded(profile: Profile, case: Bounded) -> Profile:
     if case.from_ is None and case.to is None:
         return profile
-    return profiles.Bounded(profile, case.from_, case.to)
+    return profiles.Bounded(profile, case.from_, case.to, case.taper)

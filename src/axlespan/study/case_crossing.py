@@ -19,6 +19,7 @@ from axlespan.study.quantities import (
     Angle,
     Count,
     Delay,
+    Distance,
     Factor,
     Length,
     Name,
@@ -40,11 +41,18 @@ class Bounded(Part):
     """Where it begins."""
     to: Length | None = None
     """Where it ends."""
+    taper: Distance = 0.0
+    """Length behind from, and before to, over which it fades in and out; without it the surface may step there."""
 
     @model_validator(mode="after")
     def _forward(self) -> Self:
         if self.from_ is not None and self.to is not None and self.to <= self.from_:
             raise InputError("must be greater than from", field="to", fix="Exchange the two")
+        if self.taper and self.from_ is None and self.to is None:
+            raise InputError("goes with from and to", field="taper", fix="Add from: -20 m, or to: 60 m")
+        if self.from_ is not None and self.to is not None and 2.0 * self.taper > self.to - self.from_:
+            half = show(0.5 * (self.to - self.from_), LENGTH)
+            raise InputError(f"must be at most {half}, half the way from from to to", field="taper")
         return self
 
 
@@ -89,12 +97,20 @@ class TableIrregularity(Bounded):
         return self
 
 
+def _name_or_file(schema: dict[str, Any]) -> None:
+    schema["oneOf"] = [{"required": ["name"]}, {"required": ["file"]}]
+
+
 class SpectrumIrregularity(Bounded):
     """A random profile with the spectrum of a class of track or road."""
 
+    model_config = ConfigDict(json_schema_extra=_name_or_file)
+
     kind: Literal["spectrum"]
-    name: Annotated[Text, Field(examples=["german-low"])]
+    name: Annotated[Text | None, Field(examples=["german-low"])] = None
     """Name of the spectrum."""
+    file: Annotated[Path, ExistingFile()] | None = None
+    """Text file with a spectrum of one's own, in place of a name: ``n [1/m]; S [mm^2/(1/m)]``."""
     seed: Annotated[Seed, Field(examples=["1"])]
     """Seed of the random phases: the same seed gives the same profile."""
     wavelengths: Annotated[
@@ -112,6 +128,20 @@ class SpectrumIrregularity(Bounded):
     """Distance of the rails, for spectra of the cross level that are angles; 1.5 m when left out."""
 
     @model_validator(mode="after")
+    def _one_spectrum(self) -> Self:
+        if self.name is None and self.file is None:
+            raise InputError("is missing", field="name", fix="Add name: german-low, or file: spectrum.csv")
+        if self.name is not None and self.file is not None:
+            raise InputError("says again what name says", field="file", fix="Keep one of the two")
+        if self.file is not None and self.rails is not None:
+            raise InputError(
+                "needs the level and the cross level, and the file has one spectrum",
+                field="rails",
+                fix="Use a name, or give each line its own: {kind: lines, lines: {left: ..., right: ...}}",
+            )
+        return self
+
+    @model_validator(mode="after")
     def _two_rails(self) -> Self:
         if self.rails is not None and (len(self.rails) != 2 or self.rails[0] == self.rails[1]):
             raise InputError("must be two different lines", field="rails", fix="Write [left, right]")
@@ -121,9 +151,9 @@ class SpectrumIrregularity(Bounded):
 
     @field_validator("name", mode="after")
     @classmethod
-    def _known(cls, name: str, info: ValidationInfo) -> str:
+    def _known(cls, name: str | None, info: ValidationInfo) -> str | None:
         spectra: Sequence[str] = tuple((info.context or {}).get("spectra", ()))
-        if spectra and name not in spectra:
+        if name is not None and spectra and name not in spectra:
             near = nearest(name, spectra)
             raise InputError(
                 "no such spectrum",

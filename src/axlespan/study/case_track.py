@@ -98,7 +98,7 @@ class HangingSleeper(Part):
 
     at: Annotated[Length, Field(examples=["5.4 m"])]
     """Position along the track; the nearest sleeper is meant."""
-    gap: Annotated[float, Measured(LENGTH, above=0.0, believable=(1e-5, 0.05))]
+    gap: Annotated[float, Measured(LENGTH, above=0.0, believable=(1e-5, 0.05)), Field(examples=["1 mm"])]
     """Gap under it."""
 
 

@@ -87,7 +87,23 @@ def read_case(
 ) -> LoadedCase:
     """Validate the text of a case file; ``file`` is its name in messages.
 
-    Parameters, errors and result are those of :func:`load_case`.
+    The result is that of :func:`load_case`.
+
+    Parameters
+    ----------
+    text : str
+        YAML.
+    file : str
+        Its name in messages.
+    folder : path
+        Where the files that it names are.
+    vehicles, spectra : collection of str
+        Names that it may use beside those that come along.
+
+    Raises
+    ------
+    InputErrors
+        All that is wrong, with line and column.
     """
     document = read_yaml(text, file)
     source = Source(file, text, document.root)

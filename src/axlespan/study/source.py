@@ -53,7 +53,17 @@ class Source:
         return not rest and spot.written in ("", "~", "null") and spot.children is None
 
     def blame(self, path: Path, rule: str, fix: str | None = None) -> InputError:
-        """Return an error that points to a value, with the value as written."""
+        """Return an error that points to a value, with the value as written.
+
+        Parameters
+        ----------
+        path : tuple of str and int
+            Keys and places that lead to it.
+        rule : str
+            What it breaks, in a sentence without full stop.
+        fix : str, optional
+            What to write instead.
+        """
         spot, rest = self._walk(path)
         steps = _steps(path)
         inside = bool(rest) and spot.children is None  # a word where a mapping or a list is expected
@@ -68,7 +78,17 @@ class Source:
         return InputError(rule, field=_dotted(steps), fix=fix, place=self.place(path), **more)
 
     def blame_key(self, path: Path, rule: str, fix: str | None = None) -> InputError:
-        """Return an error that points to a key."""
+        """Return an error that points to a key.
+
+        Parameters
+        ----------
+        path : tuple of str and int
+            Keys and places that lead to it.
+        rule : str
+            What it breaks, in a sentence without full stop.
+        fix : str, optional
+            What to write instead.
+        """
         spot, _ = self._walk(path)
         place = Place(self.file, spot.key_line, spot.key_column)
         return InputError(rule, field=_dotted(_steps(path)), fix=fix, place=place)

@@ -37,10 +37,18 @@ def multibody(
 
     Parameters
     ----------
+    bodies : sequence of Body
+    wheels : sequence of Wheel
+        Single ones, or wheelsets with a gauge.
+    suspensions : sequence of Suspension
+        Between bodies, or a body and a wheel.
+    hinges : sequence of Hinge
+        Between bodies that share a point.
     loads : sequence of BodyLoad
         Constant forces on bodies; they change the static contact forces.
     length : float, optional
         Over couplers [m].
+    name : str
 
     Raises
     ------

@@ -31,6 +31,7 @@ def sprung_mass(
         Of the suspension [N/m], [N s/m].
     unsprung_mass : float
         Mass of the wheel [kg].
+    name : str
 
     Raises
     ------
@@ -56,7 +57,19 @@ def sprung_mass(
 
 
 def rigid_mass(*, mass: float, name: str = "rigid mass") -> Vehicle:
-    """A mass that follows the line exactly: a moving mass [kg]. D.o.f.: ``wheel1.z``."""
+    """A mass that follows the line exactly: a moving mass [kg]. D.o.f.: ``wheel1.z``.
+
+    Parameters
+    ----------
+    mass : float
+        [kg].
+    name : str
+
+    Raises
+    ------
+    InputError
+        If the mass is not positive.
+    """
     require_positive(mass, "mass")
     model = (
         Model(plane=True).with_nodes([[0.0, 0.0]], ["wheel1"]).with_mass("wheel1", mass, directions=("z",))
@@ -75,6 +88,12 @@ def axle_loads(
         Downward [N]; one for all axles or one each.
     positions : sequence of float
         Distances behind the first axle [m], the first being 0.
+    name : str
+
+    Raises
+    ------
+    InputError
+        If a load is not positive, or loads and positions do not fit.
     """
     values = list(loads) if isinstance(loads, Sequence | np.ndarray) else [loads] * len(positions)
     if len(values) != len(positions):
@@ -111,6 +130,12 @@ def rigid_body(
         Of each axle: suspension [N/m], [N s/m] and wheel [kg].
     center : float, optional
         Distance of the center of gravity behind the first axle [m]; the middle by default.
+    name : str
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or there are fewer than two axles.
 
     Notes
     -----

@@ -24,7 +24,7 @@ class Placement:
     """A vehicle and the distance of its first wheel behind the head of the train [m]."""
 
     vehicle: Vehicle
-    behind: float
+    behind: float  # [m]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -49,6 +49,16 @@ class Train(Shown):
     ) -> Train:
         """Equal vehicles at a spacing [m] from first wheel to first wheel.
 
+        Parameters
+        ----------
+        vehicle : Vehicle
+        count : int
+            How many.
+        spacing : float, optional
+            [m]; needed for more than one.
+        name : str, optional
+            That of the vehicle when left out.
+
         Raises
         ------
         InputError
@@ -67,6 +77,14 @@ class Train(Shown):
     @classmethod
     def joined(cls, trains: Sequence[Train], gaps: Sequence[float], *, name: str = "train") -> Train:
         """Trains one behind another; gaps [m] from each train's last wheel to the next one's first.
+
+        Parameters
+        ----------
+        trains : sequence of Train
+            From the head on.
+        gaps : sequence of float
+            One fewer than the trains [m].
+        name : str
 
         Raises
         ------
@@ -123,7 +141,13 @@ class Train(Shown):
         return np.concatenate([forces[id(item.vehicle)] for item in self.placements])
 
     def as_axle_loads(self, gravity: float = GRAVITY) -> Train:
-        """The same train as moving forces of its static wheel loads."""
+        """The same train as moving forces of its static wheel loads.
+
+        Parameters
+        ----------
+        gravity : float
+            [m/s^2].
+        """
         kinds = {id(item.vehicle): item.vehicle for item in self.placements}
         loads = {key: vehicle.as_axle_loads(gravity) for key, vehicle in kinds.items()}
         placements = tuple(Placement(loads[id(item.vehicle)], item.behind) for item in self.placements)
@@ -133,6 +157,11 @@ class Train(Shown):
         """The same train as masses that follow the line, each wheel with the mass of its static load.
 
         Wheels of trains that are given as forces become masses of force by gravity.
+
+        Parameters
+        ----------
+        gravity : float
+            [m/s^2].
         """
         kinds = {id(item.vehicle): item.vehicle for item in self.placements}
         masses = {key: vehicle.as_moving_masses(gravity) for key, vehicle in kinds.items()}

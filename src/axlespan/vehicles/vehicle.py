@@ -217,7 +217,13 @@ class Vehicle(Shown):
         return replace(self, contacts=contacts)
 
     def as_axle_loads(self, gravity: float = GRAVITY) -> Vehicle:
-        """The same wheels as moving forces of their static loads."""
+        """The same wheels as moving forces of their static loads.
+
+        Parameters
+        ----------
+        gravity : float
+            [m/s^2].
+        """
         forces = self.static_forces(gravity)
         points = tuple(
             replace(point, dof=None, force=float(force), law=None)
@@ -227,6 +233,11 @@ class Vehicle(Shown):
 
     def as_moving_masses(self, gravity: float = GRAVITY) -> Vehicle:
         """The same wheels as masses that follow the line, each with the mass of its static load.
+
+        Parameters
+        ----------
+        gravity : float
+            [m/s^2].
 
         Raises
         ------

@@ -166,7 +166,15 @@ class Spectrum:
         return replace(self, density=_Multiple(self.density, factor), note=f"{note}density times {factor:g}")
 
     def scaled_to(self, standard_deviation: float, wavelength_min: float, wavelength_max: float) -> Spectrum:
-        """Return the spectrum scaled to a standard deviation [m] between two wavelengths [m]."""
+        """Return the spectrum scaled to a standard deviation [m] between two wavelengths [m].
+
+        Parameters
+        ----------
+        standard_deviation : float
+            [m].
+        wavelength_min, wavelength_max : float
+            The band [m].
+        """
         require_positive(standard_deviation=standard_deviation)
         return self.scaled(
             (standard_deviation / self.standard_deviation(wavelength_min, wavelength_max)) ** 2
@@ -176,6 +184,11 @@ class Spectrum:
         """Return the spectrum of an angle as that of a height difference over a base [m]: S times base².
 
         For the cross level the base is the distance of the wheels' contact points, 1.5 m on standard gauge.
+
+        Raises
+        ------
+        InputError
+            If it is a length already, or the base is not positive.
         """
         require_positive(base=base)
         if self.amplitude_unit != "rad":
@@ -239,6 +252,11 @@ def tabulated(
         S there, positive [m²/(1/m)] or [m²/(rad/m)].
     quantity, argument, sides, source
         As for `Spectrum`.
+
+    Raises
+    ------
+    InputError
+        If points are not positive or do not increase.
     """
     n, s = column(arguments, "arguments"), column(densities, "densities")
     require_increasing(n, "arguments")

@@ -53,6 +53,11 @@ def china_ballastless(quantity: Quantity = "vertical", *, percentile: float | No
         Share of the line, between 0 and 1, whose density lies below the one returned; the mean when left out.
         The density at one frequency is taken as chi-square distributed with two degrees of freedom, so the
         factor on the mean is -ln(1 - percentile): 0.693 for 50 %, 2.303 for 90 % (from memory).
+
+    Raises
+    ------
+    InputError
+        If there is no such quantity, or the percentile is not between 0 and 1.
     """
     require_choice(quantity, QUANTITIES, "quantity")
     mean = Spectrum(

@@ -55,6 +55,16 @@ def iso8608_class(gd: float) -> str:
     """Return the class, "A" to "H", of a road with the displacement density gd = Gd(0.1 cycles/m) [m³].
 
     The limits between the classes are 32, 128, 512, … 131072 · 1e-6 m³.
+
+    Parameters
+    ----------
+    gd : float
+        Gd(0.1 cycles/m) [m³].
+
+    Raises
+    ------
+    InputError
+        If it is not positive.
     """
     require_positive(gd=gd)
     for i, name in enumerate(_CLASSES[:-1]):

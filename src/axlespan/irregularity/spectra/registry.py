@@ -40,7 +40,13 @@ _REGISTRY = {(name, quantity): make for name, quantity, make in _entries()}
 
 
 def spectrum_names(quantity: Quantity | None = None) -> list[str]:
-    """Return the names of the spectra in the library, of those for one quantity when it is given."""
+    """Return the names of the spectra in the library, of those for one quantity when it is given.
+
+    Parameters
+    ----------
+    quantity : {"vertical", "alignment", "cross level", "gauge"}, optional
+        What varies; all when left out.
+    """
     return sorted({name for name, known in _REGISTRY if quantity in (None, known)})
 
 

@@ -41,7 +41,7 @@ class Envelope:
     """The worst of a quantity at each speed, over all else that varies."""
 
     speed: FloatArray  # (n,) [m/s], ascending
-    value: FloatArray  # (n,)
+    value: FloatArray  # (n,) [unit of the quantity]
     id: npt.NDArray[np.int64]  # (n,) the scenario it comes from
 
     @property

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -47,7 +48,7 @@ class Trial:
     alone: float  # of a step of one scenario [s]
     beside: float  # of each further scenario side by side [s]
     building: float  # of a scenario, its structure at hand [s]
-    structure: float  # of a structure [s]
+    structure: float  # of a structure: building and factoring [s]
     memory: float  # of a scenario in a batch [byte]
     kept: float  # of histories and records of a scenario on the disk [byte]
     built: int  # how many were looked at
@@ -93,32 +94,28 @@ def try_out(
     workshop = Workshop(recipe)
     ids = np.unique(np.linspace(0, len(scenarios) - 1, _BUILT).astype(np.int64)).tolist()
     built: list[BuiltCase] = []
-    times: list[float] = []
     faults: list[InputError] = []
     values = scenarios.values(ids)
     good = values[0]
     for number, own in zip(ids, values, strict=True):
-        begun = time.perf_counter()
         try:
             built.append(workshop.build(own))
             good = own
-            times.append(time.perf_counter() - begun)
         except InputError as error:
             faults.append(located(error, number))
     if faults and not (forgiving and built):
         raise InputErrors(faults[:1] if built else faults)
-    begun = time.perf_counter()
-    workshop.build(good)
-    again = time.perf_counter() - begun
+    again = _time_of(partial(workshop.build, good))
+    afresh = _time_of(partial(Workshop(recipe).build, good))
     plans = [one.plan for one in built]
-    alone, beside, start = _timed(plans) if timed else (0.0, 0.0, 0.0)
+    alone, beside, start, first = _timed(plans) if timed else (0.0, 0.0, 0.0, 0.0)
     notes = dict.fromkeys(text for one in built for text in one.cautions)
     return Trial(
         steps=float(np.mean([plan.settings.steps for plan in plans])),
         alone=alone,
         beside=beside,
         building=again + start,
-        structure=max(0.0, times[0] - again),
+        structure=max(0.0, afresh - again) + first,
         memory=max(_COPIES * size_of(plan).result for plan in plans) + 2e5,
         kept=float(np.mean([_kept_bytes(recipe, plan) for plan in plans])),
         built=len(plans),
@@ -127,27 +124,31 @@ def try_out(
     )
 
 
-def _timed(plans: Sequence[Plan]) -> tuple[float, float, float]:
-    """Time of a step of one scenario, of each further one beside it, and of the start of one."""
+def _time_of(work: Callable[[], object]) -> float:
+    begun = time.perf_counter()
+    work()
+    return time.perf_counter() - begun
+
+
+def _timed(plans: Sequence[Plan]) -> tuple[float, float, float, float]:
+    """Times [s]: of a step of one scenario, of each further one beside it, of the start of one, and of the first."""
     first = together(plans[0])
     some = [plan for plan in plans if together(plan) == first][:_LANES]
 
     def run(count: int, steps: int) -> float:
         own = [_short(some[k % len(some)], steps) for k in range(count)]
-        begun = time.perf_counter()
-        run_plans(own)
-        return time.perf_counter() - begun
+        return _time_of(lambda: run_plans(own))
 
     few = 2
     run(1, few)  # what is compiled or loaded at the first call
     steps = min(_STEPS, *(plan.settings.steps for plan in some))
     if steps <= few:
-        return run(1, steps) / steps, 0.0, 0.0
+        return run(1, steps) / steps, 0.0, 0.0, 0.0
     start_one, start_many = run(1, few), run(_LANES, few)
     one = (run(1, steps) - start_one) / (steps - few)
     many = (run(_LANES, steps) - start_many) / (steps - few)
     per_start = max(0.0, (start_many - start_one) / (_LANES - 1))
-    return max(one, 1e-9), max((many - one) / (_LANES - 1), 0.0), per_start
+    return max(one, 1e-9), max((many - one) / (_LANES - 1), 0.0), per_start, max(0.0, start_one - per_start)
 
 
 def _short(plan: Plan, steps: int) -> Plan:

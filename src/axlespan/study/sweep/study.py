@@ -285,7 +285,15 @@ class Study:
         )
 
     def estimate(self, *, workers: int = 1, free: float = 4e9) -> Estimate:
-        """What it takes on so many workers, from a trial."""
+        """What it takes on so many workers, from a trial.
+
+        Parameters
+        ----------
+        workers : int
+            Processes.
+        free : float
+            Memory that batches may share [byte].
+        """
         return estimate(self.trial(), self._scenarios, len(self.columns), workers=workers, free=free)
 
     # --- running -------------------------------------------------------------------------------
@@ -318,6 +326,8 @@ class Study:
             From :meth:`trial`, if it has been made already.
         free : float
             Memory that batches may share [byte].
+        resume : bool
+            Whether a store of this study is gone on with.
 
         Returns
         -------

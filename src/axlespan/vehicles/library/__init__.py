@@ -67,6 +67,11 @@ def entry(name: str) -> LibraryEntry:
 def vehicle(name: str) -> Vehicle:
     """Return a vehicle of the library.
 
+    Parameters
+    ----------
+    name : str
+        As ``axlespan library`` lists it.
+
     Raises
     ------
     InputError
@@ -86,6 +91,8 @@ def train(name: str, count: int = 1, spacing: float | None = None) -> Train:
 
     Parameters
     ----------
+    name : str
+        As ``axlespan library`` lists it.
     count : int
         Number of vehicles, or of trains.
     spacing : float, optional
@@ -103,6 +110,11 @@ def load(path: str | os.PathLike[str]) -> LibraryEntry:
     """Read a vehicle or a train from a file of one's own.
 
     Vehicles of a train are names of the library, or files beside this one.
+
+    Parameters
+    ----------
+    path : path
+        A YAML file.
 
     Raises
     ------

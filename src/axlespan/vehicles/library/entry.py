@@ -35,7 +35,7 @@ class Stated:
     total_mass: float | None = None  # [kg]
     axle_loads: tuple[float, ...] = ()  # [N], of all axles, or of each
     frequencies: tuple[float, ...] = ()  # [Hz], each of which the vehicle must have
-    tolerance: float = 1e-3  # relative
+    tolerance: float = 1e-3  # relative [-]
 
 
 @dataclass(frozen=True)
@@ -68,6 +68,8 @@ class LibraryEntry:
         ``rail`` or ``road``.
     pitch : float or None
         Distance from first wheel to first wheel of equal vehicles that follow each other [m].
+    length : float or None
+        Over buffers [m].
     model : Vehicle or None
         The vehicle; None for a train.
     groups : tuple of Group

@@ -62,7 +62,8 @@ class _Parts:
             inner = _inside(items[int(number)], key)
             if isinstance(inner.content, str):
                 return inner.wrong(error.rule, error.fix)
-            return error.located(inner.place, inner.path)
+            named = inner.path if inner is not items[int(number)] or not key else inner.below(key)
+            return error.located(inner.place, named)
         keys = root.mapping()
         return error.located(keys[section if section in keys else "bodies"].place, error.field)
 

@@ -74,6 +74,11 @@ TITLES = (
 def fatigue(number: int) -> Train:
     """Fatigue train of type 1 to 12, as moving forces.
 
+    Parameters
+    ----------
+    number : int
+        1 to 12.
+
     Raises
     ------
     InputError

@@ -25,6 +25,11 @@ def names() -> tuple[str, ...]:
 def entry(name: str) -> LoadTrain:
     """A load train by its name.
 
+    Parameters
+    ----------
+    name : str
+        ``hslm-a1``, as ``axlespan library`` lists it.
+
     Raises
     ------
     InputError
@@ -37,5 +42,16 @@ def entry(name: str) -> LoadTrain:
 
 
 def vehicle(name: str) -> Vehicle:
-    """All axles of a load train as one group of moving forces."""
+    """All axles of a load train as one group of moving forces.
+
+    Parameters
+    ----------
+    name : str
+        ``hslm-a1``, as ``axlespan library`` lists it.
+
+    Raises
+    ------
+    InputError
+        If there is none of that name.
+    """
     return entry(name).vehicle()

@@ -23,7 +23,18 @@ _Rows = list[tuple[int, list[str]]]
 
 
 def read_axles(path: str | Path) -> Train:
-    """A train of moving forces from a file; see :func:`axle_table`."""
+    """A train of moving forces from a file; see :func:`axle_table`.
+
+    Parameters
+    ----------
+    path : path
+        A table with the columns position and load.
+
+    Raises
+    ------
+    InputError
+        If the file is wrong, with its line.
+    """
     positions, loads = axle_table(path)
     return Train.of(axle_loads(loads=loads, positions=positions, name=Path(path).stem))
 
