@@ -59,6 +59,17 @@ def test_a_notebook_gets_a_table(bridge, train):
         assert page.count("<tr>") == page.count("</tr>") == len(thing.card().facts)
 
 
+def test_a_bar_counts_the_steps(bridge, train, capsys):
+    crossing = asp.Crossing(bridge, train, speed=30.0)
+    asp.simulate(crossing, time_step=1e-3, steps=40, progress=True)
+    assert "40/40 steps" in capsys.readouterr().out
+    asp.simulate(crossing, time_step=1e-3, steps=40, progress=False)
+    assert capsys.readouterr().out == ""
+    seen = []
+    asp.simulate(crossing, time_step=1e-3, steps=40, progress=seen.append)
+    assert seen[-1] == 40
+
+
 def test_text_is_escaped():
     page = Card("a < b", [("x", "<script>")], "f('&')").html()
     assert "<script>" not in page

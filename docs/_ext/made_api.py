@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import inspect
+from collections.abc import Iterable
 from importlib import import_module
 from pathlib import Path
 
@@ -93,7 +94,10 @@ def data_told(module: str, name: str) -> str:
         said.insert(0, lines[at].lstrip("#: "))
     if isinstance(thing, str):
         return f"{' '.join(said)} ``{thing}``"
-    return f"{' '.join(said)} They are {', '.join(f'``{word}``' for word in thing)}."
+    words = [word for word in thing if isinstance(word, str)] if isinstance(thing, Iterable) else []
+    if not words:
+        return " ".join(said)
+    return f"{' '.join(said)} They are {', '.join(f'``{word}``' for word in words)}."
 
 
 def _home(module: str, name: str) -> str:

@@ -16,8 +16,8 @@ EXTENSIONS = str(Path(__file__).parents[2] / "docs" / "_ext")
 if EXTENSIONS not in sys.path:
     sys.path.append(EXTENSIONS)
 
-import field_comments
-import made_api
+import field_comments  # noqa: E402
+import made_api  # noqa: E402
 
 # A unit in brackets, words that say that a number has none, or where else it is told.
 UNIT = re.compile(r"\[[^\]]+\]|\b(factor|share|exponent|numbers? of|as (in|for) :)", re.IGNORECASE)
@@ -138,9 +138,13 @@ def test_what_is_raised_is_told(item):
         assert "InputError" in item.doc.partition("Raises\n")[2], "no Raises"
 
 
-@pytest.mark.parametrize("room", ["axlespan.bridges", "axlespan.irregularity", "axlespan.standards"])
+WITH_DATA = ("bridges", "irregularity", "standards", "vehicles.load_trains")
+
+
+@pytest.mark.parametrize("room", WITH_DATA)
 def test_data_is_told(room):
     """Data has no docstring of its own: the comment before it is shown."""
+    room = f"axlespan.{room}"
     module = import_module(room)
     names = [name for name in module.__all__ if not callable(getattr(module, name))]
     names = [name for name in names if not inspect.ismodule(getattr(module, name))]

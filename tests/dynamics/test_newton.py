@@ -11,7 +11,9 @@ from axlespan.dynamics.newton import NewtonIntegrator
 from axlespan.errors import AnalysisError
 
 N = 4
-K = sp.csr_array(1e5 * sp.diags_array([-np.ones(N - 1), 2.0 * np.ones(N), -np.ones(N - 1)], offsets=[-1, 0, 1]))
+K = sp.csr_array(
+    1e5 * sp.diags_array([-np.ones(N - 1), 2.0 * np.ones(N), -np.ones(N - 1)], offsets=[-1, 0, 1])
+)
 M = sp.csr_array(sp.diags_array([10.0, 12.0, 8.0, 11.0]))
 C = sp.csr_array(2e-4 * K)
 MATRICES = Matrices(K, M, C)
@@ -31,7 +33,8 @@ class Cubic:
     def tangent(self, u, v, state):
         e, r = self.B @ u, self.B @ v
         return tuple(
-            sp.csr_array(self.B.T @ sp.diags_array(d) @ self.B) for d in (3 * self.k * e**2, 2 * self.c * np.abs(r))
+            sp.csr_array(self.B.T @ sp.diags_array(d) @ self.B)
+            for d in (3 * self.k * e**2, 2 * self.c * np.abs(r))
         )
 
     def advanced(self, u, v, state):
@@ -75,7 +78,9 @@ def exact(element, end, points):
         u, v = y[:N], y[N:]
         return np.concatenate([v, Minv * (push(t) - K @ u - C @ v - element.force(u, v, None))])
 
-    found = solve_ivp(rate, (0.0, end), np.zeros(2 * N), t_eval=points, method="DOP853", rtol=1e-8, atol=1e-10)
+    found = solve_ivp(
+        rate, (0.0, end), np.zeros(2 * N), t_eval=points, method="DOP853", rtol=1e-8, atol=1e-10
+    )
     return found.y[:N].T
 
 
@@ -173,7 +178,9 @@ def test_no_convergence_is_an_outcome():
     body = NewtonIntegrator(
         MATRICES, [Wrong(1e12, 0.0)], Alpha(0.0), 2e-3, cuts=2, dof_names=["a.z", "b.z", "c.z", "d.z"]
     )
-    with pytest.raises(AnalysisError, match=r"step \d+, t = .* halved 2 times .* worst at d.o.f. [abcd].z") as caught:
+    with pytest.raises(
+        AnalysisError, match=r"step \d+, t = .* halved 2 times .* worst at d.o.f. [abcd].z"
+    ) as caught:
         body.march(State.at_rest((N,)), lambda t: 100.0 * push(t), 100)
     kept = caught.value.result
     assert len(kept.time) == len(kept.figures) + 1

@@ -96,7 +96,9 @@ def test_nothing_moves_on_a_smooth_rigid_way():
     """The static approach is in the start: before the bridge every law keeps the static state to rounding."""
     placements = tuple(
         Placement(replace(UNIT, contacts=(replace(UNIT.contacts[0], law=law),)), 4.0 * i)
-        for i, law in enumerate((Hertz(), Unilateral(), LinearSpring(2e6, 4e3), Rigid(), LinearSpring(tension=True)))
+        for i, law in enumerate(
+            (Hertz(), Unilateral(), LinearSpring(2e6, 4e3), Rigid(), LinearSpring(tension=True))
+        )
     )
     crossing = Crossing(BRIDGE, Train(placements), speed=20.0, start=-8.0)
     result = simulate(crossing, time_step=1e-3, steps=450)
@@ -124,7 +126,9 @@ def test_a_train_may_mix_laws(rigid):
 
 def test_a_linear_tyre_is_a_suspension_more():
     """A wheel on a linear spring that may pull equals rigid contact under a massless wheel on that spring."""
-    body = rigid_body(mass=4e3, pitch_inertia=6e3, axles=[0.0, 2.5], stiffness=8e5, damping=1e4, unsprung_mass=300.0)
+    body = rigid_body(
+        mass=4e3, pitch_inertia=6e3, axles=[0.0, 2.5], stiffness=8e5, damping=1e4, unsprung_mass=300.0
+    )
     law = LinearSpring(1.2e6, tension=True)
     bump = Bump(1.0, 6.0, 4e-3)
     crossing = Crossing(BRIDGE, Train.of(body), speed=20.0, irregularity=bump, start=-1.0)
@@ -250,7 +254,7 @@ def dropped(contact, method, time_step, duration, *, height=5e-3, elements=6, ma
     start.fleet.values[:, 0] = height, 0.0, -G
     start = replace(start, forces=np.zeros(1), load=np.zeros_like(start.load))
     raised = -height - plan.laws.indentation
-    if not contact.kind == "unilateral":
+    if contact.kind != "unilateral":
         start.fleet.values[0, 0] = height + plan.laws.indentation[0]
     coupling.approach = coupling.before = raised
     coupling.touching = np.zeros(1, dtype=bool)
@@ -319,7 +323,9 @@ def test_damping_of_a_tyre_takes_what_is_missing():
     scale = 3000.0 * G * 5e-3
     force = result.contact_force[:, 0]
     elastic = 2e6 * np.maximum(approach + laws.indentation, 0.0)
-    dissipated = np.concatenate([[0.0], np.cumsum(0.5 * ((force - elastic)[1:] + (force - elastic)[:-1]) * np.diff(approach))])
+    dissipated = np.concatenate(
+        [[0.0], np.cumsum(0.5 * ((force - elastic)[1:] + (force - elastic)[:-1]) * np.diff(approach))]
+    )
     assert dissipated[-1] > 0.1 * scale
     assert np.abs(total + dissipated - total[0]).max() < 1e-5 * scale
 
@@ -332,8 +338,8 @@ def test_a_wheel_that_hangs_at_the_start_is_said():
     car = rigid_body(
         mass=2e4, pitch_inertia=4e5, axles=[0.0, 3.0, 6.0], stiffness=3e6, damping=1e4, unsprung_mass=300.0
     )
-    hole = Bump(-4.0, 2.0, -60e-3)
-    crossing = Crossing(BRIDGE, Train.of(car), speed=10.0, start=0.0, irregularity=hole)
+    hole = Bump(-5.0, 2.0, -60e-3)
+    crossing = Crossing(BRIDGE, Train.of(car), speed=10.0, start=-1.0, irregularity=hole)
     result = simulate(crossing, time_step=1e-3, steps=500, contact="unilateral")
     assert result.contact_force[0, 1] == 0.0
     assert result.contact_force[0].sum() == pytest.approx((2e4 + 900.0) * G, rel=1e-4)
@@ -346,10 +352,10 @@ def test_a_wheel_that_hangs_at_the_start_is_said():
 
 def test_a_lost_vehicle_stops_the_run():
     """A drop of 2 m behind a smooth ramp: all wheels are in the air for too long; the history is kept."""
-    crossing = Crossing(
-        BRIDGE, Train.of(UNIT), speed=30.0, start=-24.0, irregularity=Bump(-20.0, 10.0, 1.2)
-    )
-    with pytest.raises(AnalysisError, match="vehicle 1 is lost: all its wheels have been in the air for 0.2 s") as caught:
+    crossing = Crossing(BRIDGE, Train.of(UNIT), speed=30.0, start=-24.0, irregularity=Bump(-20.0, 10.0, 1.2))
+    with pytest.raises(
+        AnalysisError, match=r"vehicle 1 is lost: all its wheels have been in the air for 0\.2 s"
+    ) as caught:
         simulate(crossing, time_step=1e-3, steps=2000, contact="unilateral", lost_after=0.2)
     kept = caught.value.result
     assert kept.outcome.code == "failed"
@@ -385,7 +391,9 @@ def test_moving_forces_have_no_law():
     own = replace(loads, contacts=(replace(loads.contacts[0], law=Unilateral()),))
     with pytest.raises(InputError, match="a moving force acts whatever the contact"):
         simulate(Crossing(BRIDGE, Train.of(own), speed=20.0), time_step=1e-3, steps=10)
-    result = simulate(Crossing(BRIDGE, Train.of(loads), speed=20.0), time_step=1e-3, steps=10, contact="hertz")
+    result = simulate(
+        Crossing(BRIDGE, Train.of(loads), speed=20.0), time_step=1e-3, steps=10, contact="hertz"
+    )
     np.testing.assert_array_equal(result.contact_force, 1e5)
 
 

@@ -147,7 +147,9 @@ class PlainTrack:
                 w, dw = pu + be * DT**2 * new, pv + ga * DT * new
                 inner, tangent = self.inner(w, dw)
                 f = self.weight - inner - row * force
-                rest = np.concatenate([self.M @ new - (1 + al) * f + al * f_old, [row @ (w - level) / (be * DT**2)]])
+                rest = np.concatenate(
+                    [self.M @ new - (1 + al) * f + al * f_old, [row @ (w - level) / (be * DT**2)]]
+                )
                 A = self.M + (1 + al) * (ga * DT * self.C + be * DT**2 * tangent)
                 J = np.block([[A, (1 + al) * row[:, None]], [row[None], np.zeros((1, 1))]])
                 change = np.linalg.solve(J, rest)
@@ -190,7 +192,11 @@ def test_hanging_sleepers_equal_a_plain_newton_code(hanging):
     result, (u, force), _ = hanging
     plain = PlainTrack(unilateral(HANGING))
     rail = u - u[0]
-    for name, s in (("over", HANGING[0] * H), ("between", (HANGING[0] + 0.5) * H), ("next", (HANGING[1] + 1) * H)):
+    for name, s in (
+        ("over", HANGING[0] * H),
+        ("between", (HANGING[0] + 0.5) * H),
+        ("next", (HANGING[1] + 1) * H),
+    ):
         row = plain.row(s)
         row[plain.wheel] = 0.0
         own = result.at("sensor_displacement", name)
@@ -234,7 +240,9 @@ def test_springs_that_stay_closed_change_nothing():
         np.column_stack([np.arange(N + 1) + 2 * (N + 1), np.arange(N + 1) + N + 1]), {"z": BALLAST}
     )
     compiled = compile_model(linear)
-    other = Structure(compiled.system, {MAIN_LINE: path_on_beams(linear, compiled.table, range(N + 1))}, model=linear)
+    other = Structure(
+        compiled.system, {MAIN_LINE: path_on_beams(linear, compiled.table, range(N + 1))}, model=linear
+    )
     plain = simulate(
         Crossing(other, Train.of(axle_loads(loads=3e3)), speed=SPEED),
         time_step=DT, steps=200, sensors={"x": 4.0},
@@ -263,7 +271,9 @@ def two_masses(law):
     model = model.with_support(0, ["z"], name="left").with_support(1, ["z"], name="right")
     model = model.with_support(4, ["z"], name="ground")
     compiled = compile_model(model)
-    return Structure(compiled.system, {MAIN_LINE: path_on_beams(model, compiled.table, [0, 2, 1])}, model=model)
+    return Structure(
+        compiled.system, {MAIN_LINE: path_on_beams(model, compiled.table, [0, 2, 1])}, model=model
+    )
 
 
 @pytest.mark.parametrize("name", LAWS)
@@ -293,9 +303,12 @@ def test_each_law_equals_a_plain_newton_march(name, alpha):
         if name == "power":
             return 4e9 * e * abs(e), 8e9 * abs(e), 0.0
         if name == "multilinear":
-            for low, high, f0, k in ((-9, -1e-3, None, 3e6), (-1e-3, 0.0, None, 6e6), (0.0, 9, None, 2e6)):
+            for low, high, base, k in (
+                (-9.0, -1e-3, -3e3, 3e6),
+                (-1e-3, 0.0, 0.0, 6e6),
+                (0.0, 9.0, 0.0, 2e6),
+            ):
                 if low <= e < high:
-                    base = {3e6: -6e3 + 3e6 * 1e-3, 6e6: 0.0, 2e6: 0.0}[k]
                     return base + k * e, k, 0.0
         if name == "hysteresis":  # hardening modulus of the back force: 1/k_t = 1/k + 1/h
             h = 8e6 * 1e6 / (8e6 - 1e6)
@@ -454,7 +467,9 @@ def test_springs_in_a_vehicle_equal_a_plain_newton_march(alpha, kind):
     from axlespan.irregularity import Harmonic
     from axlespan.vehicles.nonlinear import with_nonlinear_spring
 
-    bridge = simple_span(length=25.0, youngs_modulus=2.87e9, second_moment=2.9, mass_per_length=2303.0, elements=6)
+    bridge = simple_span(
+        length=25.0, youngs_modulus=2.87e9, second_moment=2.9, mass_per_length=2303.0, elements=6
+    )
     car = sprung_mass(mass=6000.0, stiffness=1.2e6, damping=8e3, unsprung_mass=500.0)
     waves = Harmonic(amplitude=4e-3, wavelength=9.0)
     if kind == "bump stop":
@@ -467,7 +482,9 @@ def test_springs_in_a_vehicle_equal_a_plain_newton_march(alpha, kind):
 
         def plain(e):
             slope = 1e7 if abs(e) < 1e-4 else 1e5 / (1.0 - 1e-4)
-            return (1e7 * e, slope) if abs(e) < 1e-4 else (np.sign(e) * (1e3 + slope * (abs(e) - 1e-4)), slope)
+            return (
+                (1e7 * e, slope) if abs(e) < 1e-4 else (np.sign(e) * (1e3 + slope * (abs(e) - 1e-4)), slope)
+            )
 
     own = with_nonlinear_spring(car, law, {"body.z": 1.0, "wheel1.z": -1.0}, gap=gap, name=kind)
     method, dt, steps = Alpha(alpha), 1e-3, 300

@@ -41,7 +41,10 @@ WAVES = ir.Harmonic(1e-3, 5.0)
         (ir.Bounded(WAVES, 0.0, 3.75), "1 mm at 3.75 m"),
         (ir.Table([2.0, 4.0, 6.0], [0.0, 1e-3, 2e-3]), "-2 mm at 6 m"),
         (ir.Shifted(ir.Table([0.0, 4.0], [3e-4, 0.0]), 1.0), "0.3 mm at 1 m"),
-        (ir.Sum((WAVES, ir.Scaled(ir.Bounded(ir.Harmonic(1e-3, 5.0, np.pi / 2), 5.0), 0.5))), "0.5 mm at 5 m"),
+        (
+            ir.Sum((WAVES, ir.Scaled(ir.Bounded(ir.Harmonic(1e-3, 5.0, np.pi / 2), 5.0), 0.5))),
+            "0.5 mm at 5 m",
+        ),
     ],
 )
 def test_steps_are_told(beam, profile, step):

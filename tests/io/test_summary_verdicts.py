@@ -51,3 +51,9 @@ def test_only_what_is_missing():
 def test_a_limit_from_below_and_huge_utilization():
     lines = verdict_lines({"verdicts": [row(900.0, 600.0, unit="", at_least=True), row(1e9, 1.0)]})
     assert "> 100" in lines[1] and "67 %" in lines[2] and "at least 600" in lines[2]
+
+
+def test_a_limit_that_is_hardly_missed_is_not_shown_as_reached():
+    lines = verdict_lines({"verdicts": [row(3.505, 3.5), row(3.5, 3.5)]})
+    assert lines[1].split()[:3] == ["FAIL", ">", "100"]
+    assert next(line for line in lines if "pass" in line and "%" in line).split()[:3] == ["pass", "100", "%"]

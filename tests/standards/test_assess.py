@@ -11,6 +11,7 @@ from axlespan.bridges import SupportAt
 from axlespan.model.motions import Constant
 from axlespan.reference import point_load_deflection
 from axlespan.standards import CHECKS, FROM_MEMORY, Assessment, BridgeFacts, assess, bridge_facts, overall
+from axlespan.standards.bridge_values import added_damping
 from axlespan.standards.dynamic_factors import phi2, phi_double_dash
 from axlespan.standards.filters import low_pass, up_to
 from axlespan.standards.lm71 import InfluenceLine, lm71_effect
@@ -160,6 +161,27 @@ def test_damping_above_the_lower_bound_fails(result, crossing):
     assert verdict.value == pytest.approx(0.01)
 
 
+def test_of_several_spans_the_one_counts_that_allows_least_damping():
+    """1.0 % above 20 m, 1.14 % of 18 m; moving forces add 0.48 % to 18 m and 0.086 % to 24 m."""
+    beam = asp.bridges.continuous_beam(
+        spans=[18.0, 24.0, 18.0],
+        elements=12,
+        youngs_modulus=34e9,
+        second_moment=1.0,
+        mass_per_length=1e4,
+        damping=asp.Modal(0.012),
+    )
+    limits = {}
+    for name, vehicle in (("car", CAR), ("forces", asp.vehicles.axle_loads(loads=[1e5], positions=[0.0]))):
+        crossing = asp.Crossing(beam, asp.Train.of(vehicle), speed=50.0)
+        result = asp.simulate(crossing, time_step=2e-3, steps=200)
+        (verdict,) = assess(result, crossing, dataclasses.replace(LINE, checks=("damping",)))
+        limits[name] = verdict.limit
+        assert "span 24 m" in verdict.note and verdict.value == pytest.approx(0.012)
+    assert limits["car"] == 0.01
+    assert limits["forces"] == pytest.approx(0.01 + added_damping(24.0))
+
+
 def test_what_the_run_does_not_have_is_not_assessed(crossing):
     short = asp.simulate(crossing, time_step=2e-3, steps=300)
     found = {verdict.check: verdict for verdict in assess(short, crossing, Assessment())}
@@ -192,6 +214,29 @@ def test_coarse_records_are_not_assessed(crossing):
     assert "records are 0.04 s apart" in found["deck_acceleration"].reason
     assert "a filter at 20 Hz asks for 0.0125 s" in found["wheel_unloading"].reason
     assert found["deflection"].outcome == "pass"
+
+
+def test_thinned_records_are_not_assessed(crossing):
+    """They have no filter before them: 80 Hz would count as 20 Hz in records 10 ms apart."""
+    thin = asp.simulate(crossing, time_step=1e-3, steps=1500, every=2, line_points=11)
+    found = {verdict.check: verdict for verdict in assess(thin, crossing, LINE)}
+    for check in ("deck_acceleration", "wheel_unloading", "contact_force"):
+        assert "one record of 2 steps was kept" in found[check].reason
+    assert found["deflection"].outcome == "pass"
+
+
+def test_wheels_of_vehicles_in_space_are_no_halves_of_axles():
+    """Both wheels of an axle on the one line of a plane beam: each has its own force, not half of it."""
+    train = asp.Train.of(asp.vehicles.library.vehicle("ice-3d-trailer"))
+    plane = asp.bridges.simple_span(**BRIDGE)
+    crossing = asp.Crossing(plane, train, speed=50.0, line={"left": "main", "right": "main"})
+    result = asp.simulate(crossing, time_step=2e-3, steps=500, line_points=11)
+    verdict = next(v for v in assess(result, crossing, LINE) if v.check == "contact_force")
+    static = train.static_forces()[0]
+    assert static == pytest.approx(58.4e3 * 9.81 / 8.0, rel=1e-3)
+    assert verdict.value == pytest.approx(static, rel=0.1)
+    assert verdict.limit == pytest.approx(min(90e3 + static, 190e3))
+    assert "half" not in verdict.note
 
 
 def test_moving_forces_have_no_unloading_and_no_coaches():

@@ -60,7 +60,10 @@ analysis: {{time_step: 0.5 ms, steps: 300, contact: unilateral, lost_after: 0.25
     train = Train(tuple(Placement(one, 6.0 * i) for i, one in enumerate(cars)))
     waves = asp.irregularity.Harmonic(amplitude=8e-3, wavelength=3.0)
     own = asp.simulate(
-        asp.Crossing(bridge, train, speed=60.0, irregularity=waves), time_step=5e-4, steps=300, lost_after=0.25
+        asp.Crossing(bridge, train, speed=60.0, irregularity=waves),
+        time_step=5e-4,
+        steps=300,
+        lost_after=0.25,
     )
     np.testing.assert_array_equal(result.contact_force, own.contact_force)
     assert result.contact_force[:, :2].min() == 0.0
@@ -78,10 +81,10 @@ output: {sensors: {hole: 24.3 m}}
 """
     )
     result = run_plan(built.plan)
-    track = with_unilateral_springs(track_on_ground(ballasted_track(), 48.0), "ballast", hanging=[(24.3, 1e-3)])
-    crossing = asp.Crossing(
-        track, asp.Train.of(asp.vehicles.axle_loads(loads=1e5)), speed=60.0, start=18.0
+    track = with_unilateral_springs(
+        track_on_ground(ballasted_track(), 48.0), "ballast", hanging=[(24.3, 1e-3)]
     )
+    crossing = asp.Crossing(track, asp.Train.of(asp.vehicles.axle_loads(loads=1e5)), speed=60.0, start=18.0)
     own = asp.simulate(crossing, time_step=5e-4, steps=250, sensors={"hole": 24.3})
     np.testing.assert_array_equal(result.sensor_displacement, own.sensor_displacement)
     plain = asp.simulate(
@@ -101,7 +104,7 @@ output: {sensors: {hole: 24.3 m}}
 LIFTING = """
 structure:
   kind: continuous-beam
-  spans: [{length: 20 m}, {length: 8 m}]
+  spans: [{length: 20 m}, {length: 11 m}]
   youngs_modulus: 34 GPa
   second_moment: 0.6 m^4
   mass_per_length: 3 t/m
@@ -109,12 +112,12 @@ structure:
   supports:
     - {at: 0 m, fixed: [z]}
     - {at: 20 m, fixed: [z]}
-    - {at: 28 m, stiffness: {z: 1 GN/m}}
+    - {at: 31 m, stiffness: {z: 1 GN/m}}
   LIFT
 train: [{vehicle: sprung-mass, mass: 40 t, stiffness: 4000 kN/m, damping: 60 kNs/m}]
 crossing: {speed: 10 m/s}
 analysis: {time_step: 2 ms, steps: 1000}
-output: {sensors: {end: 28 m}}
+output: {sensors: {end: 31 m}}
 """
 
 
@@ -134,13 +137,19 @@ def test_a_bearing_lifts(made):
     assert reaction.min() == pytest.approx(-share, rel=1e-6)
     before = np.arange(len(own)) < np.argmax(own < -share) - 1
     np.testing.assert_allclose(reaction[before], own[before], atol=1e-6 * np.abs(own).max())
-    assert lifting.at("sensor_displacement", "end").max() > 1.5 * linear.at("sensor_displacement", "end").max()
+    assert (
+        lifting.at("sensor_displacement", "end").max() > 1.5 * linear.at("sensor_displacement", "end").max()
+    )
 
 
 @pytest.mark.parametrize(
     ("structure", "analysis", "words"),
     [
-        (SPAN, "method: iterative, contact: unilateral", "does not know contact: unilateral. Use method: direct"),
+        (
+            SPAN,
+            "method: iterative, contact: unilateral",
+            "does not know contact: unilateral. Use method: direct",
+        ),
         (SPAN, "basis: reduced, contact: unilateral", "does not know contact: unilateral. Use basis: full"),
         (
             "structure: {kind: track, length: 48 m, track: {kind: ballasted, hanging_sleepers: [{at: 90 m, gap: 1 mm}]}}",
@@ -168,7 +177,9 @@ analysis: {{time_step: 0.5 ms, steps: 300{more}}}
 
 
 def test_a_fixed_support_does_not_lift(made):
-    with pytest.raises(InputError, match=r"may_lift.0 = support1: must be a support with a stiffness along z"):
+    with pytest.raises(
+        InputError, match=r"may_lift.0 = support1: must be a support with a stiffness along z"
+    ):
         made(LIFTING.replace("LIFT", "may_lift: [support1]"))
 
 

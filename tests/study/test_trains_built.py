@@ -205,6 +205,41 @@ def test_several_trains_as_in_python(edited):
     np.testing.assert_allclose(case.plan.fleet.weight[-1], 3e3 * 9.81)
 
 
+@pytest.mark.parametrize(
+    "kind",
+    ["harmonic, amplitude: 1 mm, wavelength: 5 m, phase: 90 deg", "spectrum, name: german-low, seed: 1"],
+)
+def test_a_taper_fades_an_irregularity_in_and_out(edited, kind):
+    whole, cut, faded = (
+        edited(("80 km/h", f"80 km/h\n  irregularity: {{kind: {kind}{more}}}"))
+        for more in ("", ", from: 2 m, to: 22 m", ", from: 2 m, to: 22 m, taper: 5 m")
+    )
+    x = np.array([1.9, 2.0, 4.5, 7.0, 12.0, 17.0, 19.5, 22.0, 22.1])
+    share = [0.0, 0.0, 0.5, 1.0, 1.0, 1.0, 0.5, 0.0, 0.0]
+    plain, with_taper = (case.crossing.runs[0].profiles[0].value(x) for case in (whole, faded))
+    np.testing.assert_allclose(with_taper, share * plain, atol=1e-12)
+    assert any("steps by" in word for word in cut.cautions)
+    assert not any("steps by" in word for word in faded.cautions)
+
+
+@pytest.mark.parametrize(
+    ("keys", "message"),
+    [
+        ("kind: spectrum, seed: 1", "irregularity.name: is missing. Add name: german-low, or file: spectrum.csv"),
+        ("kind: spectrum, seed: 1, name: german-low, file: s.csv", "file = s.csv: says again what name says"),
+        ("kind: spectrum, seed: 1, file: s.csv, rails: [left, right]", "needs the level and the cross level"),
+        ("kind: spectrum, seed: 1, file: t.csv", "file = t.csv: no such file"),
+        ("kind: spectrum, seed: 1, name: german-low, taper: 5 m", "taper = 5 m: goes with from and to"),
+        ("kind: spectrum, seed: 1, name: german-low, from: 0 m, to: 8 m, taper: 5 m", "taper = 5 m: must be at most 4 m"),
+    ],
+)  # fmt: skip
+def test_wrong_spectra_and_tapers(edited, tmp_path, keys, message):
+    (tmp_path / "s.csv").write_text("n [1/m]; S [m^3]\n0.1; 1e-6\n1; 1e-8\n", encoding="utf-8")
+    with pytest.raises(InputError) as caught:
+        edited(("80 km/h", f"80 km/h\n  irregularity: {{{keys}}}"), folder=tmp_path)
+    assert message in str(caught.value)
+
+
 def test_irregularities_of_lines_and_rails(edited):
     waves = "{kind: lines, lines: {main: {kind: harmonic, amplitude: 1 mm, wavelength: 5 m}, b: none}}"
     with pytest.raises(InputError, match=r"crossing\.irregularity\.lines\.b = none: .*Known: main"):

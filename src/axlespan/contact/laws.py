@@ -233,7 +233,12 @@ class LinearSpring:
 Law = Rigid | Unilateral | CompliantLaw
 
 #: Laws by their words, with what they are when nothing else is said.
-LAWS: Final[dict[str, Law]] = {"rigid": Rigid(), "unilateral": Unilateral(), "hertz": Hertz(), "linear-spring": LinearSpring()}
+LAWS: Final[dict[str, Law]] = {
+    "rigid": Rigid(),
+    "unilateral": Unilateral(),
+    "hertz": Hertz(),
+    "linear-spring": LinearSpring(),
+}
 
 
 def law_of(word: object) -> Law:

@@ -111,7 +111,12 @@ class NewtonIntegrator:
         cuts: int = 6,
         dof_names: Sequence[str] | None = None,
     ) -> None:
-        self.matrices, self.elements, self.method, self.time_step = matrices, tuple(elements), method, time_step
+        self.matrices, self.elements, self.method, self.time_step = (
+            matrices,
+            tuple(elements),
+            method,
+            time_step,
+        )
         self.tolerance, self.limit, self.cuts = tolerance, limit, cuts
         self._names = dof_names
         self._linear: dict[int, Integrator] = {}  # by how often the step is halved
@@ -133,7 +138,8 @@ class NewtonIntegrator:
             ``error.result`` is the March until then.
         """
         own = list(memory) if memory is not None else [None] * len(self.elements)
-        states, figures = [state.copy()], []
+        states = [state.copy()]
+        figures: list[StepFigures] = []
         for step in range(steps):
             begin = step * self.time_step
             try:
@@ -245,7 +251,7 @@ class NewtonIntegrator:
 
     def _result(self, states: list[State], figures: list[StepFigures], memory: list[Any]) -> March:
         values = np.array([state.values for state in states])
-        time = np.arange(len(states)) * self.time_step
+        time = np.asarray(np.arange(len(states)) * self.time_step, dtype=np.float64)
         return March(time, values[:, 0], values[:, 1], values[:, 2], tuple(figures), tuple(memory))
 
     def _message(self, step: int, error: _Diverged) -> str:

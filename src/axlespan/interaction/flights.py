@@ -61,9 +61,7 @@ class Flights:
         self._first = np.searchsorted(fleet.vehicle_of, np.unique(fleet.vehicle_of))
         self._last = 0
 
-    def look(
-        self, step: int, in_air: Mask, struck: Mask, approach: FloatArray, closing: FloatArray
-    ) -> None:
+    def look(self, step: int, in_air: Mask, struck: Mask, approach: FloatArray, closing: FloatArray) -> None:
         """Look at a completed step: wheels in the air, those that struck the line, approaches [m], closing speeds [m/s].
 
         A wheel may strike the line and be in the air again at once: two flights.

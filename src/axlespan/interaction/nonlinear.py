@@ -45,7 +45,11 @@ def watch(coupling: NonlinearCoupling, recorder: Recorder) -> None:
     recorder.more_checks = coupling.flights.checks
     recorder.more_facts = coupling.facts
     recorder.energy.inner_of_fleet = coupling.field.fleet_force
-    names = [name for name, is_in_air in zip(coupling.flights.names, coupling.flights.in_air, strict=True) if is_in_air]
+    names = [
+        name
+        for name, is_in_air in zip(coupling.flights.names, coupling.flights.in_air, strict=True)
+        if is_in_air
+    ]
     if names:
         recorder.notes.append(
             f"in the air at the start, since static equilibrium leaves them unloaded: {', '.join(names)}"

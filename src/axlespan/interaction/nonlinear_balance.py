@@ -66,9 +66,7 @@ class Balance:
         """Contact rows of all wheels at a time [s]."""
         return rows_at(self.plan, time)
 
-    def closing_rates(
-        self, rows: ContactRows, structure: State, vehicles: State, time: float
-    ) -> FloatArray:
+    def closing_rates(self, rows: ContactRows, structure: State, vehicles: State, time: float) -> FloatArray:
         """Rates (n_coupled,) of the approach of all wheels [m/s]."""
         fleet = self.plan.fleet
         speed, _ = self.plan.rows.motion(time)
@@ -164,7 +162,9 @@ class Balance:
         net = forces.at(time) if forces.n_term else np.zeros(matrices.size)
         net = net - matrices.K @ structure.u - matrices.damping_force(structure.v)
         net -= rows.E.T @ given
-        scale = max(float(np.abs(matrices.K @ structure.u).max(initial=0.0)), float(np.abs(given).max(initial=0.0)))
+        scale = max(
+            float(np.abs(matrices.K @ structure.u).max(initial=0.0)), float(np.abs(given).max(initial=0.0))
+        )
         if inner is not None:
             net += inner
         net[np.abs(net) < 1e-13 * scale] = 0.0

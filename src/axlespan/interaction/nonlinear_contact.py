@@ -158,7 +158,9 @@ class NonlinearCoupling:
         forces, approach = np.zeros(len(free)), np.zeros(len(free))
         count = 0
         for group in self._off:
-            solution = self._solved(stretch.first + k, group.wheels, group.S, free[group.wheels], fleet.forces)
+            solution = self._solved(
+                stretch.first + k, group.wheels, group.S, free[group.wheels], fleet.forces
+            )
             forces[group.wheels], approach[group.wheels] = solution.forces, solution.coordinates
             count = max(count, len(solution.residuals))
         count = max(count, self._on_structure(stretch, k, free, forces, approach, fleet.forces))

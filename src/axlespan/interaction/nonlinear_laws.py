@@ -58,6 +58,4 @@ def require_direct(settings: Settings, laws: WheelLaws, springs: Sequence[Spring
             f"does not know {what}", field="method", value=settings.coupling, fix="Use method: direct"
         )
     if settings.basis != "full" and (springs or laws.unilateral.any()):
-        raise InputError(
-            f"does not know {what}", field="basis", value="reduced", fix="Use basis: full"
-        )
+        raise InputError(f"does not know {what}", field="basis", value="reduced", fix="Use basis: full")

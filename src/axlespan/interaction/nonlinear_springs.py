@@ -107,7 +107,9 @@ class Springs:
     @cached_property
     def stiffness(self) -> FloatArray:
         """Reference stiffness (n,) [N/m]."""
-        return np.concatenate([np.broadcast_to(g.stiffness, g.gap.shape) for g in self.groups] or [np.zeros(0)])
+        return np.concatenate(
+            [np.broadcast_to(g.stiffness, g.gap.shape) for g in self.groups] or [np.zeros(0)]
+        )
 
     @cached_property
     def damping(self) -> FloatArray:

@@ -24,7 +24,13 @@ from axlespan.errors import AnalysisError
 from axlespan.interaction.nonlinear_balance import Balance
 from axlespan.interaction.nonlinear_springs import Springs
 from axlespan.interaction.plan import Plan
-from axlespan.interaction.start import ContactRows, Start, StartFactors, condensed_stiffness
+from axlespan.interaction.start import (
+    ContactRows,
+    Start,
+    StartFactors,
+    about_to_enter,
+    condensed_stiffness,
+)
 from axlespan.linalg.factor import factorize
 
 FloatArray = npt.NDArray[np.float64]
@@ -62,7 +68,7 @@ def nonlinear_start(
     structure, vehicles = State.at_rest((plan.structure.size,)), State.at_rest((fleet.matrices.size,))
     structure.u[:] = statics.deflection(forces, deviation)
     vehicles.u[:] = _vehicles(plan, u_x)
-    touching = laws.rigid | (laws.unilateral & (forces > 0.0))
+    touching = laws.rigid | (laws.unilateral & (forces + statics.stiffness * approach > 0.0))
     approach[touching] = 0.0
     speed, _ = plan.rows.motion(0.0)
     vehicles.v[fleet.dofs] = (rows.rate + speed * (rows.E1 @ structure.u))[x]
@@ -146,10 +152,11 @@ class _Statics:
         self.weight = fleet.weight[x]
         self.k = condensed_stiffness(fleet)[np.ix_(x, x)]
         external = plan.forces.static(0.0)
-        forced = fleet.forced
+        forced, carried = fleet.forced, sp.diags_array((~about_to_enter(plan)).astype(float))
+        at_rest = sp.csr_array(carried @ rows.E)
         if len(forced):
-            external = external - rows.E[forced].T @ fleet.weight[forced]
-        E = rows.E[x]
+            external = external - at_rest[forced].T @ fleet.weight[forced]
+        E = at_rest[x]
         self._B = sp.csr_array(sp.vstack([E, springs.rows])) if springs.n else E
         n = plan.structure.size
         self.columns = np.zeros((n, len(x) + springs.n))

@@ -22,6 +22,7 @@ from axlespan.interaction.literal import couple_literally
 from axlespan.interaction.march import couple_directly
 from axlespan.interaction.nonlinear import begin_nonlinear, watch
 from axlespan.interaction.plan import Plan, plan_for
+from axlespan.interaction.progress_bar import reporting
 from axlespan.interaction.recorder import Recorder
 from axlespan.interaction.reduced_body import PreparedReduced
 from axlespan.interaction.reduction_error import ReductionError, ringing_runs
@@ -75,7 +76,7 @@ def simulate(
     contact: str | Law = RIGID,
     lost_after: float = LOST_AFTER,
     threads: int | None = None,
-    progress: Callable[[int], None] | None = None,
+    progress: Callable[[int], None] | bool | None = None,
 ) -> Result:
     """Simulate a crossing.
 
@@ -130,11 +131,12 @@ def simulate(
         All d.o.f. of the structure, or a reduced basis, which is built here or given (see
         :func:`reduce_structure`). The result's facts hold its size and an estimate of its error.
     basis_tolerance : float, optional
-        Estimated error [-] that a basis built here must reach; it grows until it does (four sizes at most).
+        Estimated error [-] that a basis built here must reach; it grows until it does, or until a richer one would not help.
     threads : int, optional
         Threads of solves by PARDISO; when left out, those of the environment's AXLESPAN_THREADS, else one.
-    progress : callable, optional
-        Called with the number of steps done, now and then.
+    progress : callable or bool, optional
+        True shows a bar, in a terminal or a notebook; a callable is called with the number of steps done,
+        now and then.
 
     Returns
     -------
@@ -171,7 +173,8 @@ def simulate(
         lost_after=lost_after,
         threads=threads,
     )
-    return run_plan(plan_for(crossing, settings), progress)
+    with reporting(progress, steps) as report:
+        return run_plan(plan_for(crossing, settings), report)
 
 
 def simulate_many(
@@ -326,7 +329,9 @@ def _driven(
     begun = time.perf_counter()
     errors = [] if basis is None else [ReductionError(plan, basis) for plan in plans]
     factors = StartFactors(plans[0])
-    nonlinear = begin_nonlinear(plans[0], factors) if plans[0].is_nonlinear else None  # a single crossing then
+    nonlinear = (
+        begin_nonlinear(plans[0], factors) if plans[0].is_nonlinear else None
+    )  # a single crossing then
     starts = [start_of(plan, factors) for plan in plans] if nonlinear is None else [nonlinear[0]]
     recorders = [
         Recorder(plan, progress, [error] if error else []) for plan, error in zip_longest(plans, errors)

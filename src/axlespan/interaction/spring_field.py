@@ -41,7 +41,9 @@ class SpringField:
         self.springs = own.with_fleet(fleet)
         self.n, self.n_own, self.n_fleet = self.springs.n, own.n, fleet.n
         self._rows, self._rows_fleet, self._ground = own.rows, fleet.rows, own.ground
-        self._dofs, self._dofs_fleet = (np.unique(part.rows.indices).astype(np.int64) for part in (own, fleet))
+        self._dofs, self._dofs_fleet = (
+            np.unique(part.rows.indices).astype(np.int64) for part in (own, fleet)
+        )
         self._local, self._local_fleet = own.rows[:, self._dofs], fleet.rows[:, self._dofs_fleet]
         self.q = np.concatenate([deviation, np.zeros(fleet.n)])
         self.e, self.rate = np.zeros(self.n), np.zeros(self.n)
@@ -98,7 +100,9 @@ class SpringField:
         bodies = [(structure.stepper, self._dofs, self._local)]
         if fleet is not None:
             bodies.append((fleet.stepper, self._dofs_fleet, self._local_fleet))
-        self.e_free = np.concatenate([np.asarray(local @ body.displacement(at)) for body, at, local in bodies])
+        self.e_free = np.concatenate(
+            [np.asarray(local @ body.displacement(at)) for body, at, local in bodies]
+        )
         self.rate_free = np.concatenate([np.asarray(local @ body.velocity(at)) for body, at, local in bodies])
 
     @property

@@ -138,7 +138,7 @@ def _static(
     """Deflection of the structure and contact forces with the train at rest on it."""
     fleet, n = plan.fleet, plan.structure.size
     forces = fleet.weight.copy()
-    carried = np.flatnonzero(carried_by(rows.E))
+    carried = np.flatnonzero(carried_by(rows.E) & ~about_to_enter(plan))
     if not len(carried) and not np.any(external):
         return np.zeros(n), forces + _elastic_share(fleet, rows.height)
     factor = factors.stiffness
@@ -153,6 +153,30 @@ def _static(
     right = forces + k @ (rows.E @ u_0 + rows.height)
     forces = np.asarray(np.linalg.solve(np.eye(len(forces)) + k @ compliance, right), dtype=np.float64)
     return u_0 - columns @ forces[carried], forces
+
+
+def about_to_enter(plan: Plan) -> npt.NDArray[np.bool_]:
+    """Which wheels (n_contact,) run onto the structure over a fixed end that they have not passed.
+
+    A footprint reaches over that end before its wheel does. A train that has been running has not deflected
+    the structure by that share of a wheel, as one that stands there would: a span at rest is nearer to the truth,
+    by one power of the footprint's length.
+    """
+    positions = plan.rows.positions(np.zeros(1))[0]
+    speeds, _ = plan.rows.motion(0.0)
+    names = np.asarray(plan.crossing.contact_lines)
+    free = np.zeros(plan.crossing.structure.system.size, dtype=bool)
+    free[plan.crossing.structure.system.free] = True
+    result = np.zeros(len(positions), dtype=bool)
+    for name in dict.fromkeys(plan.crossing.contact_lines):
+        path = plan.crossing.structure.line(name)
+        here = np.flatnonzero(names == name)
+        before = (positions[here] <= path.start) & (speeds[here] > 0.0)
+        behind = (positions[here] >= path.stop) & (speeds[here] < 0.0)
+        dofs, weights = path.weights(np.clip(positions[here], path.start, path.stop))
+        gives_way = np.any((np.abs(weights) > 1e-9) & free[dofs], axis=1)
+        result[here] = (before | behind) & ~gives_way
+    return result
 
 
 def condensed_stiffness(fleet: Fleet) -> FloatArray:

@@ -26,7 +26,10 @@ def surface_notes(crossing: Crossing, end: float) -> list[str]:
         for name, profile in zip(run.lines, run.profiles, strict=True):
             if id(profile) not in seen:
                 seen.add(id(profile))
-                notes += [f"warning: the irregularity of the line '{name}' {word}" for word in _wrong(profile, low, high)]
+                notes += [
+                    f"warning: the irregularity of the line '{name}' {word}"
+                    for word in _wrong(profile, low, high)
+                ]
     return notes
 
 

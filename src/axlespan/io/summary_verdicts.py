@@ -82,6 +82,8 @@ def _used(row: Mapping[str, Any]) -> str:
         return "-"
     if used is None:  # beyond all numbers
         return "> 100" if row["outcome"] == "fail" else ""
+    if row["outcome"] == "fail" and 1.0 < used < 1.005:  # not 100 %, which passes
+        return "> 100 %"
     return f"{100.0 * used:.0f} %" if math.isfinite(used) and used < 100.0 else "> 100"
 
 

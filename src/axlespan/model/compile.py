@@ -15,8 +15,8 @@ from axlespan.model.assembly import assemble, element_dofs
 from axlespan.model.damping import Damping, Modal, Rayleigh
 from axlespan.model.dofs import COMPONENTS, DofTable, component_indices
 from axlespan.model.model import Model, Tie
-from axlespan.model.parts import Part
 from axlespan.model.nonlinear import NonlinearPart
+from axlespan.model.parts import Part
 from axlespan.model.system import Load, SpringRows, System
 
 FloatArray = npt.NDArray[np.float64]

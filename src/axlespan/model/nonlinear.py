@@ -45,9 +45,7 @@ class SpringLaw(Protocol):
         """Force [N], tension positive, at elongations [m] and rates [m/s], from the state of the step before."""
         ...
 
-    def tangent(
-        self, e: FloatArray, rate: FloatArray, state: FloatArray
-    ) -> tuple[FloatArray, FloatArray]:
+    def tangent(self, e: FloatArray, rate: FloatArray, state: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Derivatives of the force to elongation [N/m] and rate [N s/m]."""
         ...
 
@@ -331,7 +329,9 @@ def _table(points: Any, first: str, second: str) -> tuple[tuple[float, float], .
         raise InputError("must be finite", field="points")
     for row in range(1, len(table)):
         if table[row, 0] <= table[row - 1, 0]:
-            raise InputError(f"must have increasing {first}s", field=f"points.{row}", value=table[row].tolist())
+            raise InputError(
+                f"must have increasing {first}s", field=f"points.{row}", value=table[row].tolist()
+            )
         if table[row, 1] < table[row - 1, 1]:
             raise InputError(
                 f"must have {second}s that do not fall",

@@ -123,11 +123,13 @@ def damping(given: Given) -> list[Verdict]:
     if not facts.spans or facts.damping_ratio is None:
         reason = facts.missing or "the model's damping is not known"
         return [not_assessed(check, clause, quantity, reason, source=DAMPING_SOURCE)]
-    span = min(facts.spans)
-    bound, source, note = structural_damping(kind, span), DAMPING_SOURCE, f"{kind}, span {span:.4g} m"
-    added = added_damping(span)
-    if bool(np.all(given.moving_forces)) and added > 0.0:
-        bound, source = bound + added, f"{source}; {ADDED_SOURCE}"
+    forces = bool(np.all(given.moving_forces))
+    # Which span counts is not said for several: the one that allows least.
+    bound, span = min((_allowed(kind, span, forces), span) for span in facts.spans)
+    source, note = DAMPING_SOURCE, f"{kind}, span {span:.4g} m"
+    added = added_damping(span) if forces else 0.0
+    if added > 0.0:
+        source = f"{source}; {ADDED_SOURCE}"
         note += f"; {100.0 * added:.2g} % added for moving forces"
     excess = limit_of("damping_excess", given.assessment).value or 1.0
     verdict = judged(
@@ -141,3 +143,8 @@ def damping(given: Given) -> list[Verdict]:
         note=f"no more than the lower bound may be taken; {note}",
     )
     return [verdict]
+
+
+def _allowed(kind: str, span: float, forces: bool) -> float:
+    """Lower bound of the damping ratio [-] of a span [m], with what is added for moving forces."""
+    return structural_damping(kind, span) + (added_damping(span) if forces else 0.0)

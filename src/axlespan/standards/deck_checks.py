@@ -31,6 +31,8 @@ def deck_acceleration(given: Given) -> list[Verdict]:
     if not 0.0 < given.interval <= longest:
         reason = f"records are {given.interval:.3g} s apart; frequencies up to {band:.3g} Hz ask for {longest:.2g} s"
         return [not_assessed(check, clause, quantity, reason)]
+    if given.thinned:
+        return [not_assessed(check, clause, quantity, given.thinned)]
     filtered = np.abs(up_to(result.line_acceleration, given.interval, band))
     row, column = np.unravel_index(int(np.argmax(filtered)), filtered.shape)
     limit = limit_of(check, given.assessment)

@@ -34,6 +34,18 @@ class Given:
         """Time between records [s]; zero if there is but one."""
         return float(self.result.time[1] - self.result.time[0]) if len(self.result.time) > 1 else 0.0
 
+    @property
+    def thinned(self) -> str:
+        """Why records of every few steps cannot be filtered; empty for those of every step."""
+        step = float(self.result.facts.get("time_step") or self.interval)
+        if self.interval <= 1.5 * step:
+            return ""
+        every = round(self.interval / step)
+        return (
+            f"one record of {every} steps was kept, and what is faster folds into the band of the rule: leave out "
+            "every, under output"
+        )
+
     @cached_property
     def speed(self) -> float:
         """Highest speed of the run [m/s]."""

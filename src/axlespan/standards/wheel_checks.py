@@ -153,6 +153,8 @@ def _filtered(given: Given) -> tuple[FloatArray, FloatArray] | str:
     longest = 0.5 / (2.0 * WHEEL_FREQUENCY)
     if given.interval > longest:
         return f"records are {given.interval:.3g} s apart; a filter at 20 Hz asks for {longest:.3g} s"
+    if given.thinned:
+        return given.thinned
     if not np.all(np.isfinite(given.static_forces)):
         return "the static wheel forces are not known"
     smooth = low_pass(result.contact_force, given.interval, WHEEL_FREQUENCY)

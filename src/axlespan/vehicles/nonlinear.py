@@ -54,7 +54,9 @@ def with_nonlinear_spring(
     """
     system = vehicle.system
     if system is None:
-        raise InputError("is a group of moving forces, which have no springs", field="vehicle", value=vehicle.name)
+        raise InputError(
+            "is a group of moving forces, which have no springs", field="vehicle", value=vehicle.name
+        )
     if not elongation or not np.all(np.isfinite([*elongation.values(), gap])):
         raise InputError("must name d.o.f. with finite factors, and a finite gap", field="elongation")
     at = [system.dof(dof) for dof in elongation]

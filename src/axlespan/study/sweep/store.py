@@ -12,6 +12,7 @@ Files appear whole, histories before the rows that name them. Only the process t
 
 from __future__ import annotations
 
+import importlib
 import json
 import shutil
 import time
@@ -106,6 +107,7 @@ class Store:
         InputError
             If the folder holds something else, another study, or is in use.
         """
+        _require_pyarrow()
         made = _require_room(folder, resume)
         try:
             folder.mkdir(parents=True, exist_ok=True)
@@ -336,6 +338,13 @@ def _begin(folder: Path, header: Header, texts: Mapping[str, str]) -> None:
                 (folder / name).unlink(missing_ok=True)
         words = error.strerror or str(error)
         raise InputError(f"cannot be written to: {words}", place=Place(str(folder))) from None
+
+
+def _require_pyarrow() -> None:
+    try:
+        importlib.import_module("pyarrow")
+    except ImportError:
+        raise InputError("is not installed", field="pyarrow", fix="pip install 'axlespan[study]'") from None
 
 
 def _require_room(folder: Path, resume: bool) -> bool:

@@ -45,7 +45,9 @@ class Group:
     entry: LibraryEntry
     count: int
     spacing: float | None  # first wheel to first wheel of the next [m]
-    to_next: float | None = None  # from the last one's first wheel to that of the next group, where it differs [m]
+    to_next: float | None = (
+        None  # from the last one's first wheel to that of the next group, where it differs [m]
+    )
 
     @property
     def reach(self) -> float | None:
