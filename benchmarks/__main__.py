@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from benchmarks import beams, growth, nonlinear, solid, track
+from benchmarks import beams, growth, nonlinear, solid, sweeps, track
 from benchmarks.timing import report
 
 BENCHMARKS = {
@@ -13,6 +13,7 @@ BENCHMARKS = {
     "track": track.run,
     "growth": growth.run,
     "solid": solid.run,
+    "sweeps": sweeps.run,
     "nonlinear": nonlinear.run,
 }
 

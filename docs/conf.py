@@ -26,7 +26,7 @@ extensions = [
     "made_pages",
 ]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
-exclude_patterns = ["_build", "_ext", "_static", "gallery/*", "made/gallery/*.ipynb", "**/*.py.md5"]
+exclude_patterns = ["_build", "_ext", "_static", "gallery/*", "made/gallery/*.ipynb", "**/*.py.md5", "**/sg_execution_times.rst"]
 language = "en"
 html_theme = "furo"
 html_title = f"axlespan {release}"
@@ -59,4 +59,5 @@ sphinx_gallery_conf = {
     "remove_config_comments": True,
     "abort_on_example_error": True,
     "nested_sections": False,
+    "write_computation_times": False,
 }

@@ -10,17 +10,21 @@ from axlespan.verification.book import CASES, as_markdown, run, select
 INTRODUCTION = """# Verification
 
 Every case is computed while this page is made, by `axlespan verify`; expected values come from where the last
-column says. An error is a part of what the column *of* names. The cases below are the quick ones, or with
-`AXLESPAN_DOCS_FULL=1` all of them. {left}
+column says. An error is a part of what the column *of* names. The cases below are the quick ones; with
+`AXLESPAN_DOCS_FULL=1` a build computes all of them, with `AXLESPAN_DOCS_QUICK=1` two. {left}
 
 """
 
 
-def page(path: Path) -> str:
-    """Return the book; one that is there already is taken when the build asks for speed."""
-    if os.environ.get("AXLESPAN_DOCS_QUICK") and path.exists():
-        return path.read_text(encoding="utf-8")
+#: What a quick build computes.
+FEW = ("neves-3.1", "moving-force")
+
+
+def page(_path: Path) -> str:
+    """Return the book, of a few cases when the build asks for speed."""
     chosen = select(full=bool(os.environ.get("AXLESPAN_DOCS_FULL")))
+    if os.environ.get("AXLESPAN_DOCS_QUICK"):
+        chosen = tuple(item for item in chosen if item.name in FEW)
     left = [item.name for item in CASES if item not in chosen]
     said = (
         f"Left out here: {', '.join(f'`{name}`' for name in left)} (`axlespan verify --full`)."

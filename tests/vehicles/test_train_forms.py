@@ -112,3 +112,17 @@ def test_vehicles_within_each_other(placements, message):
 )
 def test_vehicles_that_do_not_touch(placements, lines):
     Train(tuple(Placement(vehicle, behind) for vehicle, behind in placements)).require_apart(lines)
+
+
+def test_trains_of_any_spacings_can_be_turned():
+    """The head of the turned train is at 0 exactly, whatever rounding does to sums of lengths."""
+    rng = np.random.default_rng(4)
+    for _ in range(200):
+        cars = [
+            axle_loads(loads=[1e5, 1e5], positions=[0.0, round(float(rng.uniform(1.0, 20.0)), 3)])
+            for _ in range(5)
+        ]
+        train = Train.joined([Train.of(car) for car in cars], rng.uniform(2.0, 9.0, 4).round(3).tolist())
+        turned = train.reversed()
+        assert turned.placements[0].behind == 0.0
+        np.testing.assert_allclose(turned.offsets, train.wheelbase - train.offsets[::-1], atol=1e-12)

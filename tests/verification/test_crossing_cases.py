@@ -3,10 +3,19 @@
 import pytest
 
 from axlespan.reference import midspan_amplification
-from axlespan.verification import crossings, forces, trains, wheels
+from axlespan.verification import crossings, forces, resonance, rides, trains, vehicles, wheels, yang_yau
 from axlespan.verification.forces import _AMPLIFICATION
 
-CASES = [*crossings.CASES, *forces.CASES, *trains.CASES, *wheels.CASES]
+CASES = [
+    *crossings.CASES,
+    *yang_yau.CASES,
+    *forces.CASES,
+    *trains.CASES,
+    *resonance.CASES,
+    *wheels.CASES,
+    *vehicles.CASES,
+    *rides.CASES,
+]
 
 
 @pytest.mark.parametrize("case", [c for c in CASES if not c.long], ids=lambda c: c.name)

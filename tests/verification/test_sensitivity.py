@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from axlespan.interaction import simulate as home
-from axlespan.verification import beams, crossings, forces, supports, track, wheels
+from axlespan.verification import beams, crossings, forces, rides, supports, track, vehicles, wheels, yang_yau
 from axlespan.verification.book import run
 
 
@@ -26,6 +26,13 @@ def scaled(variables, factor):
     (crossings.example_31, "contact_force", 1.0005, "mass, contact force"),
     (forces.axle_row, "sensor_displacement", 0.9995, "displacement at midspan"),
     (wheels.wheels_with_mass, "contact_force", 1.01, "contact force 2.1"),
+    (yang_yau.yang_yau, "sensor_displacement", 1.0003, "largest mid-span deflection"),
+    (vehicles.half_car_bump, "contact_force", 1.001, "contact force 1.2, the worst"),
+    (vehicles.truck_brakes, "sensor_displacement", 1.002, "mid-span displacement"),
+    (vehicles.ice3_coach, "vehicle_displacement", 1.003, "displacement 1.body.z"),
+    (rides.rough_road, "vehicle_displacement", 1.001, "displacement of the axle"),
+    (rides.roll, "vehicle_displacement", 1.003, "roll of the body"),
+    (track.ballasted_track, "sensor_displacement", 1.00001, "at rest, over a sleeper"),
     (supports.settlement, "support_reaction", 1.0001, "reaction, middle"),
     (supports.reactions, "support_reaction", 1.01, "crossing: sum of reactions / P"),
     (beams.two_spans, "support_reaction", 0.995, "slow force: middle reaction over the force"),

@@ -99,7 +99,7 @@ class BlockStepper(Stepper):
 
     def __init__(self, integrator: Integrator, state: State, blocks: Blocks) -> None:
         super().__init__(integrator, state)
-        self._blocks, self._loop = blocks, _compiled_prediction()
+        self.blocks, self._loop = blocks, _compiled_prediction()
         self._use_compiled_completion()
 
     def predict(self, *, forceless: bool = False) -> None:
@@ -108,7 +108,7 @@ class BlockStepper(Stepper):
         self._done = False
         if forceless:
             self.force[...] = 0.0
-        b = self._blocks
+        b = self.blocks
         self._loop(
             self.integrator.prediction, self.state.values, b.first, b.kind, b.begin, b.entries,
             self._work, self.acceleration,

@@ -8,7 +8,7 @@ the fleet holds the vehicles of all.
 from __future__ import annotations
 
 from copy import copy
-from functools import cache
+from functools import cache, cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +17,7 @@ import scipy.sparse as sp
 from axlespan.dynamics.alpha import Alpha
 from axlespan.dynamics.block_step import Blocks, BlockStepper
 from axlespan.dynamics.integrator import Integrator, Matrices, State, Stepper
+from axlespan.interaction.banded_body import BandedBody
 from axlespan.interaction.path_columns import PathColumns
 from axlespan.interaction.path_kernel import load_sums, subtract_at
 from axlespan.interaction.plan import Fleet
@@ -45,6 +46,11 @@ class PreparedStructure:
             matrices, method, time_step, solver=solver, threads=threads, columns=lanes
         )
         self.columns = PathColumns(self.integrator, path_dofs, loaded)
+
+    @cached_property
+    def banded(self) -> BandedBody | None:
+        """The structure as the compiled loop over steps wants it; None if it is not of narrow band."""
+        return BandedBody.of(self.integrator)
 
     def for_others(self) -> PreparedStructure:
         """The same factored structure for crossings that advance by themselves."""
@@ -161,6 +167,16 @@ class StructureBody:
         """Set the load (n,) of the last completed step, of a single crossing: wheels and all else that acts inside."""
         self._loaded, self._load = np.arange(self._n_dof), load
 
+    @property
+    def carried(self) -> tuple[IntArray, FloatArray]:
+        """Eᵀ X (n_held,) or (n_held, k) of the last completed step, with its d.o.f."""
+        return self._loaded, self._load
+
+    def settle(self, load: FloatArray | None) -> None:
+        """Set the load (n_held, …) of steps that were made, and put into the state, elsewhere."""
+        self._loaded = self.columns.held
+        self._load = np.zeros((len(self._loaded), *self._shape[1:])) if load is None else load
+
     def put(self, values: FloatArray, load: FloatArray) -> None:
         """Set the state (3, n) at the new time and Eᵀ X (n,), computed elsewhere, of a single crossing."""
         self.state.values[...] = values
@@ -186,7 +202,8 @@ class FleetBody:
         self.compliance = scale * columns[fleet.dofs]
         self.stiffness = _block_inverse(self.compliance, fleet.vehicle_of)
         self._stiffness = Product(self.stiffness)
-        self._columns = Product(sp.csr_array(self.integrator.weight_c * columns))
+        self.columns = sp.csr_array(self.integrator.weight_c * columns)  # (n, n_coupled)
+        self._columns = Product(self.columns)
         self.static = fleet.weight[fleet.coupled]  # (n_coupled,) [N]
         self.forces = forces.copy()  # (n_coupled,) of the last completed step [N]
         self.inner: FloatArray | None = None  # (n,) what nonlinear springs add at that step [N]

@@ -97,7 +97,8 @@ class Stretch:
     gap: FloatArray  # (n_step, n_coupled) of the joint fleet [m]
     systems: Sequence[System]
     forced: IntArray  # (n_forced_live,) contacts of the joint fleet that are moving forces
-    forced_held: IntArray  # (n_step, n_forced_live, n_local)
+    forced_flat: IntArray  # (n_step, n_forced_live, n_local)
+    forced_held: IntArray  # the same, in loads on the held d.o.f.
     forced_weights: FloatArray  # (n_step, n_forced_live, n_local)
 
     @property
@@ -147,6 +148,7 @@ def stretch_of(
         gap,
         parts,
         forced.names,
+        forced.flat,
         forced.held,
         forced.weights,
     )

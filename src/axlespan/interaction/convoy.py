@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -159,8 +160,25 @@ class Convoy:
 Couple = Callable[[Convoy, Stretch, int, FloatArray | None], FloatArray]
 
 
+class Leap(Protocol):
+    """Makes many steps of a convoy at once, as its coupling would one by one."""
+
+    def go(self, stretch: Stretch, first: int, stop: int, external: FloatArray | None) -> None:
+        """Make steps ``first`` to ``stop`` of a stretch under weighted factors (n_step, n_term), and write the tape."""
+        ...
+
+
+#: How to make many steps at once, where a convoy allows it.
+Leaper = Callable[[Convoy], Leap | None]
+
+
 def drive(
-    lanes: Sequence[Lane], prepared: PreparedStructure, couple: Couple, *, systems: bool = True
+    lanes: Sequence[Lane],
+    prepared: PreparedStructure,
+    couple: Couple,
+    *,
+    systems: bool = True,
+    leaper: Leaper | None = None,
 ) -> None:
     """Advance all lanes to their ends; failed ones keep their error and what was computed.
 
@@ -171,23 +189,36 @@ def drive(
         shares = [lanes[i * len(lanes) // threads : (i + 1) * len(lanes) // threads] for i in range(threads)]
         with ThreadPoolExecutor(threads) as pool:
             runs = [
-                pool.submit(_drive, share, prepared.for_others(), couple, systems=systems) for share in shares
+                pool.submit(_drive, share, prepared.for_others(), couple, systems, leaper) for share in shares
             ]
         for run in runs:
             run.result()
         return
-    _drive(lanes, prepared, couple, systems=systems)
+    _drive(lanes, prepared, couple, systems, leaper)
 
 
-def _drive(lanes: Sequence[Lane], prepared: PreparedStructure, couple: Couple, *, systems: bool) -> None:
-    convoy = Convoy(lanes, prepared)
+def _drive(
+    lanes: Sequence[Lane],
+    prepared: PreparedStructure,
+    couple: Couple,
+    systems: bool,
+    leaper: Leaper | None,
+) -> None:
+    def formed(lanes: Sequence[Lane]) -> tuple[Convoy, Leap | None]:
+        convoy = Convoy(lanes, prepared)
+        return convoy, None if leaper is None else leaper(convoy)
+
+    convoy, leap = formed(lanes)
     for lane in lanes:
         lane.recorder.begin(lane.structure, lane.fleet, lane.forces, lane.load)
-    while convoy.lanes:
+    while True:
         stretch = convoy.stretch(systems=systems)
-        failed = _make(convoy, stretch, couple)
+        failed = _make(convoy, stretch, couple, leap)
         if failed:
-            convoy = _without(convoy, failed, prepared)
+            staying = _without(convoy, failed)
+            if not staying:
+                return
+            convoy, leap = formed(staying)
             continue
         convoy.save(stretch.n_step)
         for i, lane in enumerate(convoy.lanes):
@@ -196,23 +227,29 @@ def _drive(lanes: Sequence[Lane], prepared: PreparedStructure, couple: Couple, *
             staying = [lane for lane in convoy.lanes if lane.left]
             if not staying:
                 return
-            convoy = Convoy(staying, prepared)
+            convoy, leap = formed(staying)
 
 
-def _make(convoy: Convoy, stretch: Stretch, couple: Couple) -> dict[int, tuple[int, str | None]]:
+def _make(
+    convoy: Convoy, stretch: Stretch, couple: Couple, leap: Leap | None
+) -> dict[int, tuple[int, str | None]]:
     """Make the steps of a stretch; lanes that failed, with the step inside the stretch and a message."""
     external = convoy.external(stretch)
     watching = [lane.recorder.watchers for lane in convoy.lanes]
     convoy.tape.start(stretch.n_step)
     message: str | None = None
+    looks = [k for k in range(stretch.n_step) if any(one.looks_at(stretch.first + k) for one in watching)]
     with np.errstate(over="ignore", invalid="ignore"):
-        for k in range(stretch.n_step):
+        for k in range(stretch.n_step) if leap is None else sorted({*looks, stretch.n_step - 1}):
             try:
-                forces = couple(convoy, stretch, k, None if external is None else external[k])
+                if leap is None:
+                    forces = couple(convoy, stretch, k, None if external is None else external[k])
+                    convoy.tape.take(convoy.structure, convoy.fleet, forces)
+                else:
+                    leap.go(stretch, convoy.tape.filled, k + 1, external)
             except AnalysisError as error:
                 message = str(error)
                 break
-            convoy.tape.take(convoy.structure, convoy.fleet, forces)
             for i, watchers in enumerate(watching):
                 if watchers.looks_at(stretch.first + k):
                     watchers.look(stretch.first + k, *convoy.moment(i))
@@ -229,19 +266,13 @@ def _make(convoy: Convoy, stretch: Stretch, couple: Couple) -> dict[int, tuple[i
     return {}
 
 
-def _without(
-    convoy: Convoy, failed: dict[int, tuple[int, str | None]], prepared: PreparedStructure
-) -> Convoy:
+def _without(convoy: Convoy, failed: dict[int, tuple[int, str | None]]) -> list[Lane]:
     """Let failed lanes go, with their good steps kept; the others stand where they stood before the stretch."""
     for i, (k, message) in failed.items():
         lane, steps = convoy.lanes[i], convoy.lanes[i].done + 1 + np.arange(convoy.tape.filled)
         positions = lane.plan.rows.positions(lane.plan.times_of(steps))
         lane.error = lane.recorder.broken_off(steps, positions, convoy.tape_of(i), k, message)
-    staying = [lane for i, lane in enumerate(convoy.lanes) if i not in failed]
-    if staying:
-        return Convoy(staying, prepared)
-    convoy.lanes = []
-    return convoy
+    return [lane for i, lane in enumerate(convoy.lanes) if i not in failed]
 
 
 def _slices(sizes: Sequence[int]) -> list[slice]:

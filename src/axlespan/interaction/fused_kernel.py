@@ -15,13 +15,13 @@ from typing import Any
 
 import numpy as np
 
-from axlespan.linalg.compiled import compiled
+from axlespan.linalg.compiled import as_compiled
 
 # A response to contact that is so much smaller than its largest value is none; asked every so many rows.
 _NOTHING, _ROWS = 1e-22, 16
 
 
-@compiled
+@as_compiled
 def forward(
     lanes: Any, width: Any, p: Any, late: Any, state: Any, x: Any, added: Any, reach: Any, K: Any, C: Any, damped: bool,
     lower: Any, extra: Any, forced: bool, ring: Any, ahead: Any, completes: bool, goes_on: bool
@@ -104,7 +104,7 @@ def forward(
                 x[at + c] -= entry * x[where + c]
 
 
-@compiled
+@as_compiled
 def eliminate(lanes: Any, width: Any, lower: Any, x: Any, begin: Any, must: Any) -> Any:
     """L y = b in place from row ``begin`` on, at least to row ``must``; the row behind the last one that is not nothing."""
     L, w = np.uint64(len(lanes)), np.uint64(len(width))
@@ -128,11 +128,11 @@ def eliminate(lanes: Any, width: Any, lower: Any, x: Any, begin: Any, must: Any)
     return i
 
 
-@compiled
+@as_compiled
 def backward(lanes: Any, width: Any, lower: Any, x: Any, end: Any, must: Any) -> Any:
     """Lᵀ x = D⁻¹ y in place from row ``end`` back, at least to row ``must``; the last row that is not nothing."""
     L, w, zero, one = np.uint64(len(lanes)), np.uint64(len(width)), np.uint64(0), np.uint64(1)
-    i, largest = np.uint64(end), 0.0
+    i, largest, last = np.uint64(end), 0.0, x[(np.uint64(end) + w) * L]
     while i > zero:
         stop = i - min(i, np.uint64(_ROWS))
         here = 0.0
@@ -142,10 +142,11 @@ def backward(lanes: Any, width: Any, lower: Any, x: Any, end: Any, must: Any) ->
             pivot = lower[j, zero]
             if len(lanes) == 1:
                 total = pivot * x[k]
-                for e in range(len(width)):
+                for e in range(len(width) - 1):
                     d = w - np.uint64(e)
                     total -= lower[j + d, d] * x[k + d]
-                x[k] = total
+                last = total - lower[j + one, one] * last
+                x[k] = last
             else:
                 for c in range(L):
                     x[k * L + c] *= pivot
@@ -162,7 +163,7 @@ def backward(lanes: Any, width: Any, lower: Any, x: Any, end: Any, must: Any) ->
     return i
 
 
-@compiled
+@as_compiled
 def move_vehicles(first: Any, kind: Any, begin: Any, entries: Any, parts: int, p: Any, values: Any, work: Any, result: Any) -> None:
     """Accelerations of vehicles, block after block, from their states (3, n) and the force in the last row of ``work``."""
     u, v, a = values[0], values[1], values[2]
@@ -182,7 +183,7 @@ def move_vehicles(first: Any, kind: Any, begin: Any, entries: Any, parts: int, p
             result[i] = total
 
 
-@compiled
+@as_compiled
 def solve_small(S: Any, n: Any, x: Any) -> bool:
     """S x = b in place for symmetric positive definite S (n, n), which is overwritten; False if it is not."""
     for j in range(n):
@@ -202,3 +203,171 @@ def solve_small(S: Any, n: Any, x: Any) -> bool:
             total -= S[j, m] * x[m]
         x[j] = total / S[j, j]
     return True
+
+
+@as_compiled
+def march(
+    lanes: Any, width: Any, numbers: Any, structure: Any, chunk: Any, wheels: Any, known: Any, external: Any, fleet: Any,
+    systems: Any, tape: Any, first: int, stop: int
+) -> int:  # fmt: skip
+    """Make steps ``first`` to ``stop`` of a stretch; the step whose contact system is not positive definite, or ``stop``."""
+    p, late, wc, wp = numbers
+    K, C, damped, lower, ahead, n = structure
+    state, x, added, extra, forced, ring, reach = chunk
+    place, weights, into = wheels
+    known_place, known_weights, known_forces = known
+    vectors, factors = external
+    forces, gaps, at_contacts = fleet[0], fleet[1], fleet[2]
+    contacts, ends, matrices, sizes = systems
+    w = len(width) * len(lanes)
+    gap = np.zeros(len(forces))
+    S = np.zeros((sizes[0], sizes[0]))
+    b = np.zeros(sizes[0])
+    dt, late_u, _, u_from_a, _ = late
+    u, v, a = state
+    for k in range(first, stop):
+        if forced:
+            if k > first:
+                extra[:] = 0.0
+                if wp != 0.0:
+                    _load(place[k - 1], weights[k - 1], into, forces, -wp, 0, extra)
+                    _load(known_place[k - 1], known_weights[k - 1], np.arange(len(known_forces)), known_forces, -wp, 0, extra)
+            _load(known_place[k], known_weights[k], np.arange(len(known_forces)), known_forces, -wc, 0, extra)
+            for t in range(factors.shape[1]):
+                if factors[k, t] != 0.0:
+                    for i in range(vectors.shape[1]):
+                        for c in range(len(lanes)):
+                            extra[i * len(lanes) + c] += factors[k, t] * vectors[t, i]
+        forward(
+            lanes, width, p, late, state, x, added, reach, K, C, damped, lower, extra, forced, ring, ahead, k > first, True
+        )  # fmt: skip
+        if k > first:
+            _write(lanes, state, tape, k - 1)
+        backward(lanes, width, lower, x, n, 0)
+        added[reach[0] * len(lanes) + w : reach[1] * len(lanes) + w] = 0.0
+        reach[:] = 0
+        if at_contacts[1] > at_contacts[0]:
+            _predict_fleet(fleet, p, late, wp, gaps[k], gap)
+            for r in range(len(into)):
+                total = 0.0
+                for m in range(place.shape[2]):
+                    if weights[k, r, m] != 0.0:
+                        at = np.uint64(place[k, r, m])
+                        total += weights[k, r, m] * (u[at] + (dt * v[at] + late_u * a[at]) + u_from_a * x[at + np.uint64(w)])
+                gap[into[r]] += total
+            _on_ground(fleet, gap)
+            at_matrix = 0
+            for s in range(len(ends) - 1):
+                own = contacts[ends[s] : ends[s + 1]]
+                m = len(own)
+                size = m * m
+                begin = sizes[1 + s] + k * size
+                for i in range(m):
+                    b[i] = gap[own[i]]
+                    for j in range(i, m):
+                        S[i, j] = matrices[begin + i * m + j]
+                if not solve_small(S, m, b):
+                    return k
+                for i in range(m):
+                    forces[own[i]] = b[i]
+            low, high = _load(place[k], weights[k], into, forces, -wc, w, added)
+            if high > low:
+                low, high = low // len(lanes) - len(width), high // len(lanes) - len(width) + 1
+                end = eliminate(lanes, width, lower, added, low, high)
+                reach[0], reach[1] = backward(lanes, width, lower, added, end, low), end
+            _take_fleet(fleet, late, tape, k)
+    forward(lanes, width, p, late, state, x, added, reach, K, C, damped, lower, extra, forced, ring, ahead, True, False)
+    _write(lanes, state, tape, stop - 1)
+    added[reach[0] * len(lanes) + w : reach[1] * len(lanes) + w] = 0.0
+    reach[:] = 0
+    return stop
+
+
+@as_compiled
+def _load(place: Any, weights: Any, into: Any, forces: Any, factor: float, shift: int, load: Any) -> Any:
+    """Add loads of wheels with rows (n_wheel, n_local); the lowest place and the highest one that were loaded."""
+    low, high = load.shape[0], -1
+    for r in range(len(into)):
+        scaled = factor * forces[into[r]]
+        for m in range(place.shape[1]):
+            if weights[r, m] != 0.0:
+                at = place[r, m] + shift
+                load[np.uint64(at)] += weights[r, m] * scaled
+                low, high = min(low, at), max(high, at)
+    return low, high
+
+
+@as_compiled
+def _predict_fleet(fleet: Any, p: Any, late: Any, wp: float, gaps: Any, gap: Any) -> None:
+    """Vehicles without the new contact forces; ``gap`` is that under their wheels on level ground."""
+    forces, _, at_contacts, at_dofs, values, work, result, static, dofs, blocks, _, _, _ = fleet
+    first, kind, begin, entries = blocks
+    dt, late_u, _, u_from_a, _ = late
+    parts = work.shape[0]
+    for i in range(at_dofs[0], at_dofs[1]):
+        work[parts - 1, i] = 0.0
+    for i in range(at_contacts[0], at_contacts[1]):
+        work[parts - 1, dofs[i]] = wp * forces[i] - static[i]
+    move_vehicles(first, kind, begin, entries, parts, p, values, work, result)
+    for i in range(at_contacts[0], at_contacts[1]):
+        d = dofs[i]
+        gap[i] = gaps[i] - (values[0, d] + (dt * values[1, d] + late_u * values[2, d]) + u_from_a * result[d])
+
+
+@as_compiled
+def _on_ground(fleet: Any, gap: Any) -> None:
+    """Forces of all wheels as if the ground were rigid."""
+    forces, at_contacts, stiffness = fleet[0], fleet[2], fleet[10]
+    starts, columns, entries = stiffness
+    for i in range(at_contacts[0], at_contacts[1]):
+        total = 0.0
+        for q in range(starts[i], starts[i + 1]):
+            total += entries[q] * gap[columns[q]]
+        forces[i] = total
+
+
+@as_compiled
+def _take_fleet(fleet: Any, late: Any, tape: Any, k: int) -> None:
+    """Vehicles with the new contact forces; write them down."""
+    forces, _, at_contacts, at_dofs, values, _, result, _, _, _, _, responses, coupled = fleet
+    starts, columns, entries = responses
+    dt, late_u, late_v, u_from_a, v_from_a = late
+    on_tape, forces_on_tape = tape[2], tape[3]
+    for i in range(at_dofs[0], at_dofs[1]):
+        new = result[i]
+        for q in range(starts[i], starts[i + 1]):
+            new += entries[q] * forces[columns[q]]
+        u, v, a = values[0, i], values[1, i], values[2, i]
+        values[0, i] = (u + (dt * v + late_u * a)) + u_from_a * new
+        values[1, i] = (v + late_v * a) + v_from_a * new
+        values[2, i] = new
+        for q in range(3):
+            on_tape[k, q, i] = values[q, i]
+    for i in range(at_contacts[0], at_contacts[1]):
+        forces_on_tape[k, coupled[i]] = forces[i]
+
+
+@as_compiled
+def _write(lanes: Any, state: Any, tape: Any, k: int) -> None:
+    """Write down what is watched of the structure after a step: d.o.f., and sums over all."""
+    near, rows, _, _, sums, (ends, of, at, values), lane = tape
+    u, v, a = state
+    L = np.uint64(len(lanes))
+    n = len(rows)
+    used = min(len(lanes), sums.shape[2] - lane)
+    for c in range(used):
+        into = (lane + c) * n
+        for i in range(n):
+            where = np.uint64(rows[i]) * L + np.uint64(c)
+            near[k, 0, into + i], near[k, 1, into + i], near[k, 2, into + i] = u[where], v[where], a[where]
+    for s in range(len(of)):
+        source = u if of[s] == 0 else (v if of[s] == 1 else a)
+        for c in range(used):
+            one, two, more = 0.0, 0.0, ends[s]
+            while more + 1 < ends[s + 1]:
+                one += values[more] * source[np.uint64(at[more]) * L + np.uint64(c)]
+                two += values[more + 1] * source[np.uint64(at[more + 1]) * L + np.uint64(c)]
+                more += 2
+            if more < ends[s + 1]:
+                one += values[more] * source[np.uint64(at[more]) * L + np.uint64(c)]
+            sums[k, s, lane + c] = one + two

@@ -73,17 +73,17 @@ class Reactions:
         blocks = system.partition
         times = plan.times_of(steps)
         u, v, a = near
-        motion = {
-            name: np.zeros((len(steps), len(system.prescribed)))
-            for name in ("value", "velocity", "acceleration")
-        }
-        for name, table in motion.items():
-            for j in plan.moving:
-                table[:, j] = getattr(system.motions[j], name)(times)
-        momentum = a @ self._M + motion["acceleration"] @ blocks.M_PP.T
-        reaction = self._filtered(steps, momentum)
-        reaction += u @ self._K + motion["value"] @ blocks.K_PP.T
-        reaction += v @ self._C + motion["velocity"] @ blocks.C_PP.T
+        own = [u @ self._K, v @ self._C, a @ self._M]
+        if len(plan.moving):
+            pairs = (("value", blocks.K_PP), ("velocity", blocks.C_PP), ("acceleration", blocks.M_PP))
+            for part, (name, matrix) in zip(own, pairs, strict=True):
+                table = np.zeros((len(steps), len(system.prescribed)))
+                for j in plan.moving:
+                    table[:, j] = getattr(system.motions[j], name)(times)
+                part += table @ matrix.T
+        reaction = self._filtered(steps, own[2])
+        reaction += own[0]
+        reaction += own[1]
         for vector, factor in self._loads:
             reaction -= factor(times)[:, None] * vector
         reaction += self._carried(positions, forces)

@@ -90,7 +90,7 @@ class Settings:
     basis_modes: int = 0  # beside the Ritz vectors of a basis that is built here
     basis_tolerance: float | None = None  # of the estimated error of a basis that is built here [-]
     line_points: tuple[float, ...] = ()  # positions along the deck that are kept [m]
-    energy_samples: int | None = None  # steps at which the energy is balanced; by the size of the model when left out
+    energy_samples: int | None = None  # steps at which the energy is balanced; by size when left out
     notes: Sequence[str] = ()  # what was chosen by default, and warnings
     contact: Law = RIGID  # of wheels that have no law of their own
     lost_after: float = LOST_AFTER  # time for which all wheels of a vehicle may be in the air [s]

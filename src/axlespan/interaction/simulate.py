@@ -17,6 +17,7 @@ from axlespan.errors import AnalysisError, InputError, Outcome
 from axlespan.interaction.bodies import PreparedStructure
 from axlespan.interaction.convoy import Couple, Lane, drive
 from axlespan.interaction.crossing import Crossing
+from axlespan.interaction.fused import FusedMarch
 from axlespan.interaction.iterative import IterativeCoupling
 from axlespan.interaction.literal import couple_literally
 from axlespan.interaction.march import couple_directly
@@ -344,7 +345,8 @@ def _driven(
     if nonlinear is not None:
         couple = nonlinear[1]
         watch(nonlinear[1], recorders[0])
-    drive(lanes, prepared, couple, systems=systems)
+    leaper = FusedMarch.of if couple is couple_directly else None
+    drive(lanes, prepared, couple, systems=systems, leaper=leaper)
     estimates: list[dict[str, Any]] = [{} for _ in lanes]
     if basis is not None:
         ringing = ringing_runs(plans, starts, basis, couple)

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
+import scipy.sparse as sp
 
 from axlespan.interaction.bodies import FleetBody, StructureBody
 from axlespan.interaction.nonlinear_springs import Springs
@@ -73,7 +74,7 @@ class SpringField:
         Z, on_path = np.empty((n, n)), np.empty((len(path), n))
         for begin in range(0, n, _BLOCK):
             some = slice(begin, min(begin + _BLOCK, n))
-            block = integrator.factor.solve(np.ascontiguousarray(self._rows[some].T.toarray()))
+            block = integrator.factor.solve(_dense_columns(self._rows[some]))
             Z[:, some], on_path[:, some] = self._rows @ block, block[path]
         self._columns[:n, :n] = 0.5 * scale * (Z + Z.T)
         self._place = np.zeros(integrator.size, dtype=np.int64)
@@ -164,8 +165,9 @@ class SpringField:
             e -= deviation @ self._columns[self.active]
         if len(self._at):
             loads = (self._weights * forces[self._at][:, None]).ravel()
-            used, place = np.unique(self._held, return_inverse=True)
-            e[: self.n_own] -= np.bincount(place.ravel(), loads) @ self._path[used]
+            on_path = np.bincount(self._held.ravel(), loads, minlength=len(self._path))
+            used = np.flatnonzero(on_path)
+            e[: self.n_own] -= on_path[used] @ self._path.take(used, axis=0)
         if self.n_fleet and len(forces):
             e[self.n_own :] -= forces @ self._of_wheels[self._contacts]
         rate = self.rate_free + self._rate_from_e * (e - self.e_free)
@@ -228,3 +230,11 @@ class SpringField:
         if not self.n:
             return {}
         return {"nonlinear_springs": self.n, "nonlinear_springs_active": self.largest}
+
+
+def _dense_columns(rows: sp.csr_array) -> FloatArray:
+    """The transpose (n, m) of sparse rows (m, n), row by row in memory."""
+    entries = rows.tocoo()
+    result = np.zeros((rows.shape[1], rows.shape[0]))
+    result[entries.col, entries.row] = entries.data
+    return result

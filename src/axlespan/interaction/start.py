@@ -80,12 +80,14 @@ def start_of(plan: Plan, factors: StartFactors | None = None) -> Start:
     n, n_contact = plan.structure.size, len(fleet.weight)
     external = plan.forces.at(0.0) if plan.forces.n_term else np.zeros(n)
     u_s, forces = _static(plan, plan.forces.static(0.0), rows, factors)
+    u_e, v_s = _entering(plan, rows, forces)
+    u_s = u_s + u_e
     u_v, forces = vehicles_at(fleet, forces, rows, u_s)
     structure, vehicles = State.at_rest((n,)), State.at_rest((fleet.matrices.size,))
-    structure.u[:], vehicles.u[:] = u_s, u_v
+    structure.u[:], structure.v[:], vehicles.u[:] = u_s, v_s, u_v
     x = fleet.coupled
     speed, _ = plan.rows.motion(0.0)
-    vehicles.v[fleet.dofs] = (rows.rate + speed * (rows.E1 @ u_s))[x]
+    vehicles.v[fleet.dofs] = (rows.rate + speed * (rows.E1 @ u_s) + rows.E @ v_s)[x]
     forces = _accelerate(plan, structure, vehicles, external, rows, forces.reshape(n_contact), speed, factors)
     return Start(structure, vehicles, forces, np.asarray(rows.E.T @ forces))
 
@@ -155,12 +157,35 @@ def _static(
     return u_0 - columns @ forces[carried], forces
 
 
+def _entering(plan: Plan, rows: ContactRows, forces: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Displacements and velocities (n,) under footprints that reach over a fixed end before their wheels.
+
+    The share E of a wheel that the span carries grows with its way s like exp(ω t), ω = ṡ |E'| / |E|. Under a force
+    that has grown so for long u = (K + ω² M)⁻¹ f and u̇ = ω u (damping apart): the stiff motion near the end follows
+    the force, and the slow modes hardly know of the wheel. At rest the span would be struck by that share at t = 0.
+    """
+    u, v = np.zeros(plan.structure.size), np.zeros(plan.structure.size)
+    on = np.flatnonzero(about_to_enter(plan) & carried_by(rows.E))
+    if not len(on):
+        return u, v
+    speeds, _ = plan.rows.motion(0.0)
+    share, change = (np.asarray(abs(E[on]).sum(axis=1)).ravel() for E in (rows.E, rows.E1))
+    growth = np.abs(speeds[on]) * change / share
+    for rate in np.unique(growth.round(6)):
+        wheels = on[growth.round(6) == rate]
+        matrix = sp.csr_array(plan.structure.K + rate**2 * plan.structure.M)
+        factor = factorize(matrix, kind=plan.settings.solver, threads=plan.settings.threads)
+        grown = -factor.solve(np.asarray(rows.E[wheels].T @ forces[wheels]))
+        u += grown
+        v += rate * grown
+    return u, v
+
+
 def about_to_enter(plan: Plan) -> npt.NDArray[np.bool_]:
     """Which wheels (n_contact,) run onto the structure over a fixed end that they have not passed.
 
     A footprint reaches over that end before its wheel does. A train that has been running has not deflected
-    the structure by that share of a wheel, as one that stands there would: a span at rest is nearer to the truth,
-    by one power of the footprint's length.
+    the structure by that share of a wheel, as one that stands there would.
     """
     positions = plan.rows.positions(np.zeros(1))[0]
     speeds, _ = plan.rows.motion(0.0)

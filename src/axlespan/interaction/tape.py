@@ -78,6 +78,11 @@ class Tape:
             self._sums[k, i] = vector @ values[which]
         self.filled = k + 1
 
+    @property
+    def arrays(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """What is written for the stretch: d.o.f. lane after lane (n_step, 3, …), vehicles, forces, sums."""
+        return self._near, self._vehicles, self._forces, self._sums
+
     def last_forces(self, contacts: slice) -> FloatArray:
         """Forces (n_contact,) of the last step."""
         return self._forces[self.filled - 1, contacts].copy()

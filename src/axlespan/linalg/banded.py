@@ -86,6 +86,20 @@ class BandedFactor:
             self._scaled = scaled_rows(self._lower.T, width)
 
     @property
+    def order(self) -> IntArray:
+        """The rows (n,) as they are eliminated, one after the other."""
+        return self._order.astype(np.int64)
+
+    def unit_rows(self, width: int) -> FloatArray:
+        """Rows (n + width, width + 1) of A = L D Lᵀ: 1 / D, then entry (i, i - d) of L at [i, d]; zeros at the end."""
+        result = np.zeros((self.n + width, width + 1))
+        diagonal = self._lower[0]
+        result[: self.n, 0] = 1.0 / diagonal**2
+        for d in range(1, min(self.half_bandwidth + 1, self.n)):
+            result[d : self.n, d] = self._lower[d, : self.n - d] / diagonal[: self.n - d]
+        return result
+
+    @property
     def nbytes(self) -> int:
         """Memory of the factor that a solve reads [byte]."""
         if self._scaled is not None:

@@ -38,6 +38,14 @@ def compiled(loop: Loop) -> Loop | None:
     return made
 
 
+def as_compiled(loop: Loop) -> Loop:
+    """Return a loop as machine code, or as it is without numba: for loops that call one another.
+
+    It takes numba's import; so modules of such loops are imported late.
+    """
+    return compiled(loop) or loop
+
+
 @contextmanager
 def when_compiling(say: Callable[[bool], None]) -> Iterator[None]:
     """Call ``say(True)`` when numba begins to compile and ``say(False)`` when it is done; not when it reads from disk.

@@ -19,6 +19,8 @@ from .profiles import Profile, level
 from .wheel_path import WheelPath
 from .wheel_unit import UnitTable
 
+_RUN = 100  # intervals between breaks that are computed at once
+
 
 @dataclass(frozen=True)
 class PlainResponse:
@@ -82,18 +84,16 @@ def cross_plain_vehicles(
 
 
 def _runs(breaks: FloatArray, events: FloatArray, max_step: float) -> Iterator[tuple[float, float, int]]:
-    """Yield start [s], length [s] and number of equal steps, in runs that end at events."""
+    """Yield start [s], length [s] and number of equal steps, in runs that begin at events."""
     pieces = np.ceil(np.diff(breaks) / max_step * (1.0 - 1e-9)).astype(int)
     length = np.diff(breaks) / pieces
-    nearest = np.searchsorted(events, breaks[:-1] - 1e-9 * max_step)
+    passed = np.searchsorted(events, breaks[:-1] + 1e-9 * max_step)
     first = 0
     while first < length.size:
-        same = (np.abs(length[first:] - length[first]) < 1e-9 * length[first]) & (
-            nearest[first:] == nearest[first]
-        )
-        last = first + (int(np.argmin(same)) if not same.all() else same.size)
-        # an event at the first break belongs to it: its run is one interval long
-        last = min(max(last, first + 1), first + 100)
+        same = np.abs(length[first:] - length[first]) < 1e-9 * length[first]
+        same &= passed[first:] == passed[first]
+        last = first + (same.size if same.all() else int(np.argmin(same)))
+        last = min(last, first + _RUN)
         yield float(breaks[first]), float(length[first]), int(pieces[first:last].sum())
         first = last
 

@@ -43,8 +43,7 @@ def ride(
 
     def dynamic(rate: ComplexArray) -> ComplexArray:
         s = rate[:, np.newaxis, np.newaxis]
-        total: ComplexArray = s**2 * m + s * c + k
-        return total
+        return np.asarray(s**2 * m + s * c + k, dtype=np.complex128)
 
     # steady answer to each wave
     z = dynamic(1j * omega)

@@ -172,10 +172,11 @@ class Train(Shown):
         """The same train with its tail ahead: the last vehicle leads, every vehicle the other way round."""
         kinds = {id(item.vehicle): item.vehicle for item in self.placements}
         turned = {key: vehicle.reversed() for key, vehicle in kinds.items()}
-        last = self.wheelbase
+        ends = [item.behind + item.vehicle.wheelbase for item in self.placements]
+        last = max(ends)  # not the wheelbase, whose rounding may differ: the new head is at 0 exactly
         placements = [
-            Placement(turned[id(item.vehicle)], last - item.behind - item.vehicle.wheelbase)
-            for item in self.placements
+            Placement(turned[id(item.vehicle)], last - end)
+            for item, end in zip(self.placements, ends, strict=True)
         ]
         return Train(tuple(sorted(placements, key=lambda item: item.behind)), f"{self.name} reversed")
 

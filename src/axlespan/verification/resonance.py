@@ -10,7 +10,9 @@ from axlespan.reference import Motion, SimplySupportedBeam, cross_forces
 from axlespan.vehicles import load_trains
 from axlespan.verification.case import Row, case, history, value
 
-_FRYBA = "L. Frýba, A rough assessment of railway bridges for high speed trains, Eng. Struct. 23 (2001) 548-556"
+_FRYBA = (
+    "L. Frýba, A rough assessment of railway bridges for high speed trains, Eng. Struct. 23 (2001) 548-556"
+)
 _RATIO = 0.005
 
 # A span that is not 1.5 coaches of 18 m long, where resonance and cancellation would meet
@@ -115,7 +117,9 @@ def cancellation() -> list[Row]:
             rate = 0.1 * np.sin(wave) @ result.sensor_velocity[-1]
             left.append(np.sign(v - theory) * np.hypot(q, rate / omega))
         least = float(np.roots(np.polyfit(speeds / theory - 1.0, left, 2))[-1].real) * theory + theory
-        rows.append(value(f"cancellation speed, i = {i}", "m/s", theory, least, 2e-3, "v = 2 f1 L / (2 i + 1)"))
+        rows.append(
+            value(f"cancellation speed, i = {i}", "m/s", theory, least, 2e-3, "v = 2 f1 L / (2 i + 1)")
+        )
     return rows
 
 

@@ -84,12 +84,13 @@ def rough_road() -> list[Row]:
     ]
 
 
-@case("roll", "A tram rolls: cross-wind, and waves that lift left and right in turn", "theory, (R27) to (R29)")
+@case(
+    "roll", "A tram rolls: cross-wind, and waves that lift left and right in turn", "theory, (R27) to (R29)"
+)
 def roll() -> list[Row]:
-    """Cross-wind shifts load from the left wheels to the right ones; waves of 1 mm, up on one side and down on the
-    other, roll the body.
+    """Cross-wind shifts load from the left wheels to the right ones; waves of 1 mm, opposite on both sides, roll it.
 
-    They are as long as the wheelbase, 4 m, so that both wheelsets roll alike. Rigid ground, 10 m/s, steps of 1 ms.
+    The waves are as long as the wheelbase, 4 m, so that both wheelsets roll alike. Rigid ground, 10 m/s, 1 ms steps.
     """
     inertia, stiffness, damping, spread, gauge = 14e3, 0.8e6, 15e3, 1.9, 1.5
     wheels = [Wheel(x, 900.0, gauge=gauge, roll_inertia=400.0) for x in (0.0, 4.0)]

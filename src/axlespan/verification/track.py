@@ -130,7 +130,9 @@ def ballasted_track() -> list[Row]:
         *rows,
         value("running: mean contact force", "kN", 1e-3 * weight, 1e-3 * force.mean(), 1e-3, "weight"),
         value("running: largest swing over the weight", "-", 0.0, swing, 1e-2, "sleeper passing", scale=1.0),
-        value("running: mean depth of the wheel", "mm", still, depth.mean(), 1e-2, "matrices by hand, at rest"),
+        value(
+            "running: mean depth of the wheel", "mm", still, depth.mean(), 1e-2, "matrices by hand, at rest"
+        ),
     ]
 
 

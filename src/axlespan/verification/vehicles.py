@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 import axlespan as asp
 from axlespan.reference import (
@@ -25,6 +27,8 @@ from axlespan.reference.neves2012 import BEAM
 from axlespan.vehicles import library
 from axlespan.verification.case import FloatArray, Row, case, history, value
 from axlespan.verification.models import GRAVITY, LENGTH, beam
+
+_Positions = npt.NDArray[np.floating[Any]]
 
 _THEORY = "theory page 'Reference solutions', (R32) to (R36)"
 _SENSORS = {"midspan": 0.5 * LENGTH}
@@ -56,11 +60,11 @@ _TRUCK = articulated_truck(
 
 
 def _piece(
-    start: float, length: float, of: Callable[[FloatArray], tuple[FloatArray, FloatArray, FloatArray]]
+    start: float, length: float, of: Callable[[_Positions], tuple[_Positions, _Positions, _Positions]]
 ) -> Profile:
     """A profile with a kink at both ends of a piece; ``of`` gives r, r' and r'' of the place in it [m]."""
 
-    def part(order: int) -> Callable[[FloatArray], FloatArray]:
+    def part(order: int) -> Callable[[_Positions], _Positions]:
         return lambda x: of(np.clip(np.asarray(x) - start, 0.0, length))[order]
 
     return Profile(part(0), part(1), part(2), (start, start + length))
@@ -75,7 +79,7 @@ def half_car_bump() -> list[Row]:
     height, length, start = 0.01, 1.5, 9.25
     wave = 2.0 * np.pi / length
 
-    def bump(x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def bump(x: _Positions) -> tuple[_Positions, _Positions, _Positions]:
         r = 0.5 * height * (1.0 - np.cos(wave * x))
         inside = (x > 0.0) & (x < length)
         return (
@@ -168,7 +172,9 @@ def ice3_coach() -> list[Row]:
         for end in (0.0, length):
             since = result.time - (2.0 + end + behind) / speed
             away &= (since < -4e-3) | (since > 25e-3)
-    return _rows(result, exact, _ICE3, train.static_forces(), "1.body.z", 2e-3, away, middle=15.0, acceleration=5e-3)
+    return _rows(
+        result, exact, _ICE3, train.static_forces(), "1.body.z", 2e-3, away, middle=15.0, acceleration=5e-3
+    )
 
 
 def _rows(

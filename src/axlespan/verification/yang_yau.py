@@ -82,7 +82,12 @@ def yang_yau_modes() -> list[Row]:
             ("mid-span deflection", "mm", -1e3 * result.sensor_displacement.min(), 1e-4),
             ("mid-span acceleration, upward", "m/s2", there.max(), 3e-2),
             ("mid-span acceleration, downward", "m/s2", -there.min(), 3e-2),
-            ("deflection of the mass", "mm", -1e3 * result.at("vehicle_displacement", "1.body.z").min(), 1e-4),
+            (
+                "deflection of the mass",
+                "mm",
+                -1e3 * result.at("vehicle_displacement", "1.body.z").min(),
+                1e-4,
+            ),
             ("acceleration of the mass, upward", "m/s2", body.max(), 5e-4),
             ("acceleration of the mass, downward", "m/s2", -body.min(), 5e-4),
         )
@@ -94,7 +99,9 @@ def yang_yau_modes() -> list[Row]:
     return rows
 
 
-@case("stiff-dashpot", "A sprung mass with a stiff dashpot", "the problem of VBI-2D, V02; theory, (R9) to (R18)")
+@case(
+    "stiff-dashpot", "A sprung mass with a stiff dashpot", "the problem of VBI-2D, V02; theory, (R9) to (R18)"
+)
 def stiff_dashpot() -> list[Row]:
     """N12's vehicle with a dashpot of 400 kNs/m, twice its critical damping, at 100 km/h.
 

@@ -1,0 +1,143 @@
+"""The lanes of a convoy that go through the compiled loop together, in the order of elimination, innermost in memory."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from axlespan.interaction.banded_body import BandedBody
+from axlespan.interaction.bodies import StructureBody
+from axlespan.interaction.contact_system import Stretch
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+
+class Chunk:
+    """Some lanes that follow one another: their states and what a stretch of steps needs.
+
+    Parameters
+    ----------
+    body : BandedBody
+    lane, used, width : int
+        The first lane, how many there are, and the room for them.
+    contacts, dofs, blocks : (int, int)
+        Theirs among the coupled contacts, d.o.f. and vehicles of the joint fleet.
+    """
+
+    def __init__(
+        self,
+        body: BandedBody,
+        lane: int,
+        used: int,
+        width: int,
+        contacts: tuple[int, int],
+        dofs: tuple[int, int],
+        blocks: tuple[int, int],
+    ) -> None:
+        self.lane, self.used, self.width = lane, used, width
+        self.contacts, self.dofs, self.blocks = contacts, dofs, blocks
+        self._body = body
+        n, pad = len(body.rank), 2 * body.width
+        self._values = np.zeros((3, n, width))
+        self._x, self._added = np.zeros((n + pad) * width), np.zeros((n + pad) * width)
+        self._extra = np.zeros((n, width))
+        room = 1 << (2 * body.ahead + 1).bit_length()
+        self._ring = (np.zeros(room * width), np.zeros(room * width))
+        self._reach = np.zeros(2, dtype=np.int64)
+
+    def arrays(self, forced: bool) -> tuple[Any, ...]:
+        """State, vectors to work in, and whether any force but new contact acts."""
+        u, v, a = (self._values[i].reshape(-1) for i in range(3))
+        extra = self._extra.reshape(-1)
+        return (u, v, a), self._x, self._added, extra, forced, self._ring, self._reach
+
+    def prepare(self, stretch: Stretch, lanes: int) -> None:
+        """Take from a stretch the wheels and contact systems of these lanes."""
+        low, high = self.contacts
+        own = np.flatnonzero((stretch.into >= low) & (stretch.into < high))
+        coupled = slice(own[0], own[-1] + 1) if len(own) else slice(0, 0)
+        self.wheels = (
+            self._places(stretch.flat[:, coupled], lanes),
+            stretch.weights[:, coupled],
+            stretch.into[coupled],
+        )
+        flat, weights = stretch.forced_flat, stretch.forced_weights
+        lane_of = flat[0, :, 0] % lanes if flat.size else np.empty(0, dtype=np.int64)
+        own = np.flatnonzero((lane_of >= self.lane) & (lane_of < self.lane + self.used))
+        forced = slice(own[0], own[-1] + 1) if len(own) else slice(0, 0)
+        self._forced = (self._places(flat[:, forced], lanes), weights[:, forced], stretch.forced[forced])
+        systems = [
+            s for s in stretch.systems if len(s.contacts) and low <= s.contacts[0] < high and s.matrices.size
+        ]
+        sizes = [len(system.contacts) for system in systems]
+        begins = np.cumsum([0, *(system.matrices.size for system in systems)])[:-1]
+        parts = [system.matrices.reshape(-1) for system in systems]
+        self.systems = (
+            np.concatenate([np.empty(0, np.int64), *(system.contacts for system in systems)]),
+            np.cumsum([0, *sizes]).astype(np.int64),
+            parts[0] if len(parts) == 1 else np.concatenate([np.empty(0), *parts]),
+            np.array([max(sizes, default=0), *begins], dtype=np.int64),
+        )
+
+    def _places(self, flat: IntArray, lanes: int) -> IntArray:
+        """Places in the chunk of places in the structure's state."""
+        if lanes == 1:
+            return self._body.rank[flat] * self.width
+        dof, lane = np.divmod(flat, lanes)
+        return self._body.rank[dof] * self.width + (lane - self.lane)
+
+    def known(self, weight: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
+        """Rows (n_step, n_wheel, n_local) and forces (n_wheel,) of moving forces."""
+        place, weights, contacts = self._forced
+        return place, weights, weight[contacts]
+
+    def load(self, structure: StructureBody, carried: tuple[IntArray, FloatArray], weight: float) -> None:
+        """Take the lanes' states, and the part of their contact loads that the next step begins with."""
+        rows, lanes = self._body.rows, slice(self.lane, self.lane + self.used)
+        values = structure.state.values
+        self._values[:, :, : self.used] = (
+            values[:, rows, None] if values.ndim == 2 else values[:, rows, lanes]
+        )
+        self._extra[...] = 0.0
+        if weight:
+            dofs, load = carried
+            self._extra[self._body.rank[dofs], : self.used] -= weight * load.reshape(len(dofs), -1)[:, lanes]
+
+    def store(self, structure: StructureBody) -> None:
+        """Give the states back."""
+        values, rank = structure.state.values, self._body.rank
+        if values.ndim == 2:
+            values[...] = self._values[:, rank, 0]
+        else:
+            values[:, :, self.lane : self.lane + self.used] = self._values[:, rank, : self.used]
+
+
+def chunks_of(
+    body: BandedBody,
+    sizes: tuple[Sequence[slice], Sequence[slice], Sequence[slice]],
+    most: int,
+    fewest: int,
+) -> list[Chunk]:
+    """Share lanes among chunks.
+
+    Parameters
+    ----------
+    sizes
+        For each lane its coupled contacts, vehicle d.o.f. and vehicles.
+    most, fewest : int
+        Lanes in a chunk; where there are fewer, each goes alone.
+    """
+    lanes, chunks, lane = len(sizes[0]), [], 0
+    while lane < lanes:
+        used = min(most, lanes - lane)
+        width = most
+        if used < fewest:
+            used = width = 1
+        ranges = [(of[lane].start, of[lane + used - 1].stop) for of in sizes]
+        chunks.append(Chunk(body, lane, used, width, *ranges))
+        lane += used
+    return chunks
