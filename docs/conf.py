@@ -26,19 +26,31 @@ extensions = [
     "made_pages",
 ]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
-exclude_patterns = ["_build", "_ext", "_static", "gallery/*", "made/gallery/*.ipynb", "**/*.py.md5", "**/sg_execution_times.rst"]
+exclude_patterns = [
+    "_build",
+    "_ext",
+    "_static",
+    "gallery/*",
+    "made/gallery/*.ipynb",
+    "**/*.py.md5",
+    "**/sg_execution_times.rst",
+]
 language = "en"
 html_theme = "furo"
 html_title = f"axlespan {release}"
 html_static_path = ["_static"]
+html_css_files = ["pages.css"]
 html_show_sourcelink = False
 suppress_warnings = ["config.cache"]  # the gallery's configuration holds functions
 
 # Equations are drawn by a copy of MathJax that comes along: the pages need no server.
 mathjax_path = "mathjax-tex-svg.js"
-myst_enable_extensions = ["dollarmath", "colon_fence", "deflist"]
+myst_enable_extensions = ["dollarmath", "colon_fence", "deflist", "attrs_block"]
 myst_heading_anchors = 3
-mathjax3_config = {"tex": {"tags": "none", "macros": {"tag": ["\\qquad (\\text{#1})", 1]}}}
+mathjax3_config = {
+    "svg": {"scale": 0.92},
+    "tex": {"tags": "none", "macros": {"tag": ["\\qquad (\\text{#1})", 1]}},
+}
 
 napoleon_numpy_docstring = True
 napoleon_google_docstring = False
@@ -47,6 +59,7 @@ autodoc_typehints = "signature"
 autodoc_typehints_format = "short"
 autodoc_member_order = "bysource"
 python_use_unqualified_type_names = True
+python_maximum_signature_line_length = 100
 autosummary_generate = True
 
 sphinx_gallery_conf = {
@@ -60,4 +73,5 @@ sphinx_gallery_conf = {
     "abort_on_example_error": True,
     "nested_sections": False,
     "write_computation_times": False,
+    "capture_repr": (),
 }

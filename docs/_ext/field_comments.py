@@ -84,6 +84,22 @@ def tell(_app: Any, what: str, _name: str, thing: Any, _options: Any, lines: lis
     lines[:] = insert(lines, section(fields))
 
 
+#: Docstrings of properties as they are written, by their names.
+_properties: dict[str, list[str]] = {}
+
+
+def keep(_app: Any, what: str, name: str, _thing: Any, _options: Any, lines: list[str]) -> None:
+    """Remember a property's docstring: napoleon would take what stands before a colon for its type."""
+    if what == "property" and "------" not in "".join(lines):
+        _properties[name] = list(lines)
+
+
+def restore(_app: Any, what: str, name: str, _thing: Any, _options: Any, lines: list[str]) -> None:
+    """Put it back."""
+    if what == "property" and name in _properties:
+        lines[:] = _properties.pop(name)
+
+
 def insert(lines: list[str], new: list[str]) -> list[str]:
     """Return a docstring with a section before its first one."""
     heads = [i for i in range(1, len(lines)) if lines[i].strip() and set(lines[i].strip()) == {"-"}]

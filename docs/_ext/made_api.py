@@ -53,8 +53,10 @@ def page(_path: Path) -> str:
 
 
 def _entries(module: str, names: list[str]) -> list[str]:
-    lines = []
-    for name in sorted(names, key=str.lower):
+    names = sorted(names, key=str.lower)
+    links = " · ".join(f"{{py:obj}}`{name} <{module}.{name}>`" for name in names)
+    lines = ["{.names}", links, ""]
+    for name in names:
         thing = getattr(import_module(module), name)
         if inspect.isclass(thing):
             kind = "autoexception" if issubclass(thing, BaseException) else "autoclass"

@@ -21,27 +21,57 @@ def page(_path: Path) -> str:
     whole = schema()
     sections = whole["$defs"]
     lines = [INTRODUCTION, "## The file", "", *_table(whole, sections)]
-    for name in sorted(sections, key=lambda name: _title(name, sections[name]).lower()):
+    for name in _in_order(whole, sections):
         section = sections[name]
-        if "properties" not in section:
-            continue
-        lines += [f"({_anchor(name)})=", f"## {_title(name, section)}", ""]
+        lines += [f"({_anchor(name)})=", f"## {_title(name, sections)}", ""]
         about = section.get("description", "").replace("``", "`")
         lines += [about, "", *_table(section, sections)]
     return "\n".join(lines)
+
+
+def _in_order(whole: dict[str, Any], sections: dict[str, Any]) -> list[str]:
+    """Return the names of the sections as one meets them: all kinds of structure, what is in them, the train, ..."""
+    found: dict[str, None] = {}
+
+    def meet(entry: Any) -> None:
+        if isinstance(entry, list):
+            for item in entry:
+                meet(item)
+        elif isinstance(entry, dict):
+            if "$ref" in entry:
+                name = entry["$ref"].rsplit("/", 1)[-1]
+                if name not in found:
+                    found[name] = None
+                    meet(sections[name])
+            for key in entry:
+                if key != "$defs":
+                    meet(entry[key])
+
+    meet(whole.get("properties", {}))
+    names = [*found, *(name for name in sorted(sections) if name not in found)]
+    return [name for name in names if "properties" in sections[name]]
 
 
 def _anchor(name: str) -> str:
     return f"case-{name.lower()}"
 
 
-def _title(name: str, section: dict[str, Any]) -> str:
+def _title(name: str, sections: dict[str, Any]) -> str:
+    """Return what a section is: its kind, with its own name where another one is of that kind too."""
+    said = _kind(sections[name])
+    alike = [other for other in sections if said and _kind(sections[other]) == said]
+    if not said:
+        return name
+    return said if len(alike) == 1 else f"{said} ({name})"
+
+
+def _kind(section: dict[str, Any]) -> str:
     properties = section.get("properties", {})
     for key in ("kind", "vehicle"):
         word = properties.get(key, {}).get("const")
         if word:
-            return f"{key}: {word} ({name})"
-    return name
+            return f"{key}: {word}"
+    return ""
 
 
 def _table(section: dict[str, Any], sections: dict[str, Any]) -> list[str]:
@@ -57,7 +87,7 @@ def _table(section: dict[str, Any], sections: dict[str, Any]) -> list[str]:
 
 
 def _default(entry: dict[str, Any]) -> str:
-    if "default" not in entry or entry["default"] in (None, {}, []) or isinstance(entry["default"], dict):
+    if entry.get("default") in (None, "", {}, []) or isinstance(entry["default"], dict):
         return ""
     value = entry["default"]
     return f"`{str(value).lower() if isinstance(value, bool) else value}`"
@@ -67,7 +97,10 @@ def _takes(entry: dict[str, Any], sections: dict[str, Any]) -> str:
     """Return what a key takes, in a few words with links."""
     if "$ref" in entry:
         name = entry["$ref"].rsplit("/", 1)[-1]
-        return f"[{name}](#{_anchor(name)})" if "properties" in sections.get(name, {}) else name
+        if "properties" not in sections.get(name, {}):
+            return _takes(sections[name], sections) if name in sections else name
+        word = _title(name, sections).rpartition(": ")[2]
+        return f"[{word}](#{_anchor(name)})"
     if "const" in entry:
         return f"`{entry['const']}`"
     if "enum" in entry:

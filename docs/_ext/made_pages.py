@@ -35,5 +35,8 @@ def write(app: Sphinx) -> None:
 def setup(app: Sphinx) -> dict[str, bool]:
     """Write the pages before sources are looked for."""
     app.connect("builder-inited", write)
-    app.connect("autodoc-process-docstring", field_comments.tell, priority=100)  # before napoleon reads it
+    # Before and after napoleon reads docstrings.
+    app.connect("autodoc-process-docstring", field_comments.tell, priority=100)
+    app.connect("autodoc-process-docstring", field_comments.keep, priority=100)
+    app.connect("autodoc-process-docstring", field_comments.restore, priority=900)
     return {"parallel_read_safe": True}

@@ -1,5 +1,7 @@
 """Warnings about irregularities: steps, heights, lines that no wheel runs on; one line under two names."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -8,6 +10,7 @@ from axlespan import irregularity as ir
 from axlespan.errors import InputError
 from axlespan.interaction.plan import plan_for
 from axlespan.interaction.settings import settings_for
+from axlespan.interaction.surface_notes import start_notes
 
 BEAM = {"length": 12.0, "youngs_modulus": 34e9, "second_moment": 0.5, "mass_per_length": 9e3, "elements": 12}
 CAR = asp.vehicles.sprung_mass(mass=5e3, stiffness=1e6, damping=1e4)
@@ -93,3 +96,27 @@ def test_trains_on_two_names_of_one_line_collide(track):
     crossing = asp.Crossing(track, asp.Train.of(CAR), speed=20.0, others=[other])
     with pytest.raises(InputError, match="stands on train 1 at t = 0"):
         asp.simulate(crossing, time_step=2e-3, steps=20)
+
+
+@pytest.mark.parametrize(
+    ("motion", "told"),
+    [
+        ({}, "starts at the bridge, .* start at -10 m"),
+        ({"start": -5.0}, "start at -10 m"),
+        ({"start": 6.0}, "start at -10 m"),
+        ({"start": -10.5}, None),
+        ({"start": 13.0}, None),
+        ({"start": 20.0, "direction": "backward"}, "start at 22 m"),
+        ({"start": 23.0, "direction": "backward"}, None),
+        ({"start": 5.0, "speed": 0.0}, None),
+    ],
+)
+def test_trains_that_are_set_off_on_the_track_at_the_bridge(track, motion, told):
+    crossing = asp.Crossing(track, asp.Train.of(CAR), **{"speed": 20.0} | motion)
+    found = [note for note in start_notes(crossing) if "does not move yet" in note]
+    assert len(found) == (told is not None)
+    assert told is None or re.search(told, found[0])
+
+
+def test_bare_spans_may_start_at_zero(beam):
+    assert start_notes(asp.Crossing(beam, asp.Train.of(CAR), speed=20.0)) == []

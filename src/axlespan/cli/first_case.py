@@ -118,6 +118,8 @@ def _train(wishes: Wishes) -> list[str]:
 
 def _crossing(wishes: Wishes) -> list[str]:
     lines = ["", "crossing:", f"  speed: {_kmh(wishes.speed)}"]
+    if wishes.track != "none":
+        lines.append("  start: -15 m  # before the bridge, where rails that do not move at first do no harm")
     if wishes.irregularity == "none":
         return [*lines, "  # irregularity: {kind: spectrum, name: german-low, seed: 1}"]
     return [*lines, f"  irregularity: {{kind: spectrum, name: {wishes.irregularity}, seed: 1}}"]

@@ -103,7 +103,7 @@ class Chunk:
             values[:, rows, None] if values.ndim == 2 else values[:, rows, lanes]
         )
         self._extra[...] = 0.0
-        if weight:
+        if weight and len(carried[0]):
             dofs, load = carried
             self._extra[self._body.rank[dofs], : self.used] -= weight * load.reshape(len(dofs), -1)[:, lanes]
 

@@ -55,15 +55,12 @@ def forward(
                     if inside:
                         new += added[(i + w) * L + c]
                     u0, v0, a0 = u[at + c], v[at + c], a[at + c]
-                    uc = (u0 + (dt * v0 + late_u * a0)) + u_from_a * new
-                    vc = (v0 + late_v * a0) + v_from_a * new
-                    u[at + c], v[at + c], a[at + c] = uc, vc, new
-                    mean_u[into + c] = u1 * uc + (u2 * vc + u3 * new)
-                    mean_v[into + c] = v2 * vc + v3 * new
-            else:
-                for c in range(L):
-                    mean_u[into + c] = u1 * u[at + c] + (u2 * v[at + c] + u3 * a[at + c])
-                    mean_v[into + c] = v2 * v[at + c] + v3 * a[at + c]
+                    u[at + c] = (u0 + (dt * v0 + late_u * a0)) + u_from_a * new
+                    v[at + c] = (v0 + late_v * a0) + v_from_a * new
+                    a[at + c] = new
+            for c in range(L):
+                mean_u[into + c] = u1 * u[at + c] + (u2 * v[at + c] + u3 * a[at + c])
+                mean_v[into + c] = v2 * v[at + c] + v3 * a[at + c]
         if not goes_on or i < ahead:
             continue
         j = i - np.uint64(ahead)
@@ -227,7 +224,7 @@ def march(
     u, v, a = state
     for k in range(first, stop):
         if forced:
-            if k > first:
+            if k > 0:  # before the first step of a stretch, it is there already
                 extra[:] = 0.0
                 if wp != 0.0:
                     _load(place[k - 1], weights[k - 1], into, forces, -wp, 0, extra)
@@ -271,7 +268,7 @@ def march(
                 for i in range(m):
                     forces[own[i]] = b[i]
             low, high = _load(place[k], weights[k], into, forces, -wc, w, added)
-            if high > low:
+            if high >= low:
                 low, high = low // len(lanes) - len(width), high // len(lanes) - len(width) + 1
                 end = eliminate(lanes, width, lower, added, low, high)
                 reach[0], reach[1] = backward(lanes, width, lower, added, end, low), end

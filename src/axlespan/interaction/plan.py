@@ -19,7 +19,7 @@ from axlespan.interaction.forces import AppliedForces
 from axlespan.interaction.nonlinear_laws import laws_of, require_direct
 from axlespan.interaction.sensors import by_line, check_sensors, sensor_rows
 from axlespan.interaction.settings import Settings
-from axlespan.interaction.surface_notes import surface_notes
+from axlespan.interaction.surface_notes import start_notes, surface_notes
 from axlespan.interaction.traffic import require_clear_tracks
 from axlespan.model.motions import Constant
 from axlespan.model.system import System
@@ -130,7 +130,7 @@ def plan_for(crossing: Crossing, settings: Settings) -> Plan:
     _check_time_step(plan)
     _check_reach(plan)
     end = settings.time_step * settings.steps
-    notes = [*require_clear_tracks(crossing, end), *surface_notes(crossing, end)]
+    notes = [*require_clear_tracks(crossing, end), *surface_notes(crossing, end), *start_notes(crossing)]
     if notes:
         plan = replace(plan, settings=replace(settings, notes=(*settings.notes, *notes)))
     check_sensors(crossing.structure, settings.sensors, settings.sensor_lines)

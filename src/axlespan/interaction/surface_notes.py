@@ -1,4 +1,4 @@
-"""What looks wrong of the irregularity of a crossing, and may be right: steps, heights, lines without wheels."""
+"""What looks wrong of a crossing's surface and start, and may be right: steps, heights, lines without wheels."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from axlespan.interaction.crossing import Crossing, Run
 from axlespan.irregularity import Profile
+from axlespan.running.structure import DECK_LINE, RAIL_LINE
 
 # Heights of a step that a wheel is thrown up by, and of a surface that no train runs on [m].
 _STEP, _HIGHEST = 2e-5, 0.2
@@ -15,6 +16,8 @@ _STEP, _HIGHEST = 2e-5, 0.2
 _BESIDE = 1e-7
 # Places at which a profile is looked at.
 _PLACES = 2001
+# Way on a track after which the deck's acceleration is off by less than 1 % [m]; 3 % after half of it, 34 % without.
+_SETTLED = 10.0
 
 
 def surface_notes(crossing: Crossing, end: float) -> list[str]:
@@ -31,6 +34,27 @@ def surface_notes(crossing: Crossing, end: float) -> list[str]:
                     for word in _wrong(profile, low, high)
                 ]
     return notes
+
+
+def start_notes(crossing: Crossing) -> list[str]:
+    """A warning if wheels are set off on a track at the bridge, where the rails have no velocity yet."""
+    lines = crossing.structure.lines
+    if RAIL_LINE not in lines or DECK_LINE not in lines:
+        return []
+    deck = lines[DECK_LINE]
+    for number, run in enumerate(crossing.runs):
+        way = run.course.direction
+        wheels = run.course.head(np.zeros(1)) - way * run.train.offsets
+        ahead = deck.start - wheels if way > 0 else wheels - deck.stop  # to the deck, negative from there on
+        near = (ahead < _SETTLED) & (ahead > deck.start - deck.stop)
+        if run.course.velocity(np.zeros(1))[0] != 0.0 and np.any(near):
+            place = deck.start - _SETTLED if way > 0 else deck.stop + _SETTLED
+            which = f"train {number + 1}" if len(crossing.runs) > 1 else "the train"
+            return [
+                f"warning: {which} starts at the bridge, on a track that does not move yet: forces and deck "
+                f"accelerations are wrong at first; let it start at {place:g} m or further away"
+            ]
+    return []
 
 
 def _unused(crossing: Crossing) -> Iterator[str]:

@@ -46,7 +46,7 @@ class Cluster:
         return process
 
     def scheduler(self):
-        more = ("--no-dashboard", "--host", "127.0.0.1", "--port", str(self.port))
+        more = ("--no-dashboard", "--host", "127.0.0.1", "--port", str(self.port), "--idle-timeout", "120 s")
         return self.begin("dask_scheduler", *more)
 
     def worker(self):
@@ -59,6 +59,8 @@ class Cluster:
             "--no-dashboard",
             "--host",
             "127.0.0.1",
+            "--death-timeout",
+            "30",
         )
 
     def end(self):

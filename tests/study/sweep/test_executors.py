@@ -2,6 +2,7 @@
 
 import os
 import signal
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -89,6 +90,7 @@ def deadly(task):
 
 
 def test_a_task_that_kills_its_process_is_given_up_and_the_others_are_done(study, monkeypatch):
+    monkeypatch.syspath_prepend(str(Path(__file__).parents[3]))  # processes find this module there
     monkeypatch.setattr(executors, "run_task", deadly)
     monkeypatch.setattr(executors, "TRIES", 1)
     outcomes = list(Processes(2).run(work(study, 6)))

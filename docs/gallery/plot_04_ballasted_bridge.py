@@ -21,7 +21,7 @@ train = asp.vehicles.library.train("ice3-heavy", count=2)
 rough = asp.irregularity.realize(
     asp.irregularity.spectrum("german-low"), 400.0, seed=3, wavelengths=(3.0, 80.0)
 )
-crossing = asp.Crossing(bridge, train, speed=250 / 3.6, start=-5.0, irregularity=rough)
+crossing = asp.Crossing(bridge, train, speed=250 / 3.6, start=-15.0, irregularity=rough)
 asp.plot.elevation(crossing, head=20.0, window=(-40.0, 40.0))
 
 # %%
