@@ -76,7 +76,7 @@ def test_long_cases_run_on_request_only():
 
 @pytest.mark.parametrize(("only", "fix"), [
     ("movingmass", "Did you mean 'moving-mass', "),
-    ("beem", "Did you mean 'beam-order', 'beam-frequencies'?"),
+    ("beem", "Did you mean 'beam-order', 'beam-frequencies'"),
     ("settlements", "Did you mean 'settlement'?"),
     ("zzz", "Known: neves-3.1, neves-3.2, "),
 ])  # fmt: skip

@@ -156,7 +156,13 @@ def _check_suspension(suspension: Suspension, field: str, parts: Parts) -> None:
     coefficients = ("stiffness", "damping", "roll_stiffness", "roll_damping")
     for part in coefficients:
         require_positive(getattr(suspension, part), f"{field}.{part}", zero=True)
-    if not any(getattr(suspension, part) for part in coefficients):
+    for law, gap in suspension.laws:
+        _require_finite(gap, f"{field}.laws.gap")
+        if not callable(getattr(law, "tangent", None)):
+            raise InputError(
+                "must be a law of axlespan.model.nonlinear", field=f"{field}.laws", value=type(law).__name__
+            )
+    if not suspension.laws and not any(getattr(suspension, part) for part in coefficients):
         raise InputError("has no stiffness and no damping", field=field, fix="Add its stiffness")
     if suspension.at is not None:
         _require_finite(suspension.at, f"{field}.at")

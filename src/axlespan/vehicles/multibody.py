@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from axlespan.errors import InputError
 from axlespan.vehicles.fitting import checked
 from axlespan.vehicles.loads import BodyLoad
+from axlespan.vehicles.nonlinear import with_suspension_laws
 from axlespan.vehicles.parts import Body, Hinge, Suspension, Wheel
 from axlespan.vehicles.rigid_bodies import assembled
 from axlespan.vehicles.vehicle import Vehicle
@@ -59,7 +60,7 @@ def multibody(
     points, system = assembled(parts)
     centers = {body.name: body.position for body in bodies}
     facts = {f"{body.name}.height": body.height for body in bodies if body.height is not None}
-    vehicle = Vehicle(points, system, name, length, facts, bodies=centers)
+    vehicle = with_suspension_laws(Vehicle(points, system, name, length, facts, bodies=centers), parts)
     try:
         vehicle.static_forces(0.0)  # no gravity: only whether it stands
     except InputError as error:

@@ -11,6 +11,8 @@ import scipy.sparse as sp
 from axlespan.errors import InputError
 from axlespan.model.nonlinear import SpringLaw
 from axlespan.model.system import SpringRows
+from axlespan.vehicles.fitting import Parts
+from axlespan.vehicles.parts import Suspension
 from axlespan.vehicles.vehicle import Vehicle
 
 
@@ -67,3 +69,34 @@ def with_nonlinear_spring(
     rows = sp.csr_array(sp.csr_array(full) @ system.elimination)
     spring = SpringRows(name, law, rows, np.array([float(gap)]))
     return replace(vehicle, system=replace(system, nonlinear=(*system.nonlinear, spring)))
+
+
+def with_suspension_laws(vehicle: Vehicle, parts: Parts) -> Vehicle:
+    """The vehicle with the nonlinear springs and dashpots of its suspensions."""
+    for number, suspension in enumerate(parts.suspensions, 1):
+        for law, gap in suspension.laws:
+            for elongation in _elongations(suspension, parts):
+                vehicle = with_nonlinear_spring(
+                    vehicle, law, elongation, gap=gap, name=f"suspension{number}"
+                )
+    return vehicle
+
+
+def _elongations(suspension: Suspension, parts: Parts) -> list[dict[str, float]]:
+    """The elongation over d.o.f. of each of its sides: the upper end's displacement less the lower one's."""
+    upper, lower = suspension.between
+    if upper in parts.wheels:
+        upper, lower = lower, upper
+    at = suspension.at
+    if at is None:
+        at = parts.position(lower if lower in parts.wheels else suspension.between[1])
+    half = suspension.spread and 0.5 * suspension.spread
+    result = []
+    for y in [half, -half] if half else [suspension.side or 0.0]:
+        terms: dict[str, float] = {}
+        for name, sign in ((upper, 1.0), (lower, -1.0)):
+            terms[f"{name}.z"] = sign
+            for owner, component, lever in parts.arms(name, at, y):
+                terms[f"{owner}.{'pitch' if component == 'ry' else 'roll'}"] = sign * lever
+        result.append(terms)
+    return result

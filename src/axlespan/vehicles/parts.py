@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from axlespan.model.nonlinear import SpringLaw
+
 
 @dataclass(frozen=True)
 class Body:
@@ -48,6 +50,9 @@ class Suspension:
     side: float | None = None  # of a single one, to the left of the middle [m]
     roll_stiffness: float = 0.0  # of an anti-roll bar between the two [N m/rad]
     roll_damping: float = 0.0  # [N m s/rad]
+    # Nonlinear springs and dashpots beside it, each with a gap that is added to the elongation [m]; that is the
+    # displacement of the first one less that of the second (of the body less that of the wheel), from rest on.
+    laws: tuple[tuple[SpringLaw, float], ...] = ()
 
 
 @dataclass(frozen=True)
