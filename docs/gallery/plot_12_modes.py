@@ -29,4 +29,5 @@ asp.plot.line_shapes(bridge, found.modes, "left")
 
 # %%
 
-asp.plot.space_shape(bridge, found.modes, 1)
+ax = asp.plot.space_shape(bridge, found.modes, 1)
+ax.view_init(elev=50, azim=-80)

@@ -141,6 +141,16 @@ def test_all_commands_are_listed():
         assert name in done.stdout
 
 
+def test_the_shell_completes():
+    """What ``--install-completion`` installs asks the command itself for what fits."""
+    assert "--install-completion" in README
+    words = {"_AXLESPAN_COMPLETE": "complete_bash", "COMP_WORDS": "axlespan sw", "COMP_CWORD": "1"}
+    done = subprocess.run(
+        [str(AXLESPAN)], check=False, capture_output=True, text=True, env=os.environ | words
+    )
+    assert done.stdout.split() == ["sweep"]
+
+
 def test_failed_analysis(tmp_path):
     """Exit code 3; what was computed is kept."""
     (case,) = blocks(ROOT / "README.md", "yaml")

@@ -104,6 +104,8 @@ def test_verdict_bars():
     assert colors == ["#009E73", "#D55E00", "#D55E00"]  # pass, fail, fail
     assert [text.get_text() for text in ax.get_yticklabels()] == ["deflection", "deck acceleration", "twist"]
     assert ax.texts[1].get_text() == "200 %: 7, limit 3.5 m/s²"
+    assert ax.texts[0].get_text() == "25 %: 10, limit 40 mm"
+    assert ax.texts[2].get_text() == "beyond: inf, limit 1.5 mm"
     assert ax.get_xlabel().endswith("(2 without limit or not assessed)")
     with pytest.raises(asp.InputError, match="have no limit to draw"):
         asp.plot.verdict_bars(verdicts[2:4])
@@ -118,7 +120,9 @@ def test_elevation_is_to_scale(crossing):
     assert sorted(supports.get_xdata()) == [0.0, 25.0]
     assert ax.get_aspect() == 1.0
     assert ax.get_xlim() == (-3.75, 28.75)
-    forces = asp.Crossing(crossing.structure, crossing.train.as_axle_loads(), speed=30.0, direction="backward")
+    forces = asp.Crossing(
+        crossing.structure, crossing.train.as_axle_loads(), speed=30.0, direction="backward"
+    )
     ax = asp.plot.elevation(forces, head=5.0)
     assert sorted(text.xy[0] for text in ax.texts) == [5.0, 11.0]  # backward: what follows is ahead in x
     with pytest.raises(asp.InputError, match="must hold positions that increase"):

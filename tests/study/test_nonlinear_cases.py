@@ -204,3 +204,105 @@ analysis: {{time_step: 1 ms, steps: 900, contact: unilateral, lost_after: 0.1 s}
     assert summary["outcome"]["code"] == "failed"
     assert summary["flights"]["count"] >= 1
     assert (tmp_path / "out" / "result.nc").is_file()
+
+
+# --- nonlinear springs and suspensions -----------------------------------------------------------------------
+
+TRACK = """
+structure:
+  kind: track
+  length: 48 m
+  track: {{kind: ballasted{more}}}
+  {springs}
+train: [{{vehicle: axle-loads, loads: 100 kN}}]
+crossing: {{speed: 60 m/s, start: 18 m}}
+analysis: {{time_step: 0.5 ms, steps: 120}}
+output: {{sensors: {{rail: 24 m}}}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("law", "more"),
+    [
+        ("{kind: power, force: 195 kN, at: 1 mm, exponent: 1}", ", pad_stiffness: 195 MN/m"),
+        ("{kind: multilinear, points: [[0 mm, 0 kN], [1 mm, 195 kN]]}", ", pad_stiffness: 195 MN/m"),
+        ("{kind: power-dashpot, force: 20 kN, at: 0.1 m/s, exponent: 1}", ", pad_damping: 200 kNs/m"),
+        ("{kind: multilinear-dashpot, points: [[0, 0], [1 m/s, 200 kN]]}", ", pad_damping: 200 kNs/m"),
+        (
+            "{kind: hysteresis, stiffness: 195 MN/m, yield_force: 90 MN, hardening: 1 MN/m}",
+            ", pad_stiffness: 195 MN/m",
+        ),
+    ],
+)
+def test_springs_on_a_linear_law_are_other_springs(made, law, more):
+    """A law takes the place of the stiffness of a group and leaves its dashpots; that of a dashpot the other way round."""
+    springs = f"nonlinear_springs: [{{springs: pads, law: {law}}}]"
+    built = made(TRACK.format(more="", springs=springs))
+    assert any(fact.endswith("80 springs of pads along z") for fact in built.facts)
+    on_law = run_plan(built.plan)
+    linear = run_plan(made(TRACK.format(more=more, springs="")).plan)
+    plain = run_plan(made(TRACK.format(more="", springs="")).plan)
+    size = np.abs(linear.sensor_displacement).max()
+    np.testing.assert_allclose(
+        on_law.sensor_displacement, linear.sensor_displacement, rtol=0.0, atol=1e-10 * size
+    )
+    assert np.abs(plain.sensor_displacement - linear.sensor_displacement).max() > 0.01 * size
+    for check in ("energy_residual", "equilibrium_residual"):
+        assert on_law.checks[check] < 1e-9
+
+
+def test_ballast_on_a_one_sided_law_is_unilateral_ballast(made):
+    springs = "nonlinear_springs: [{springs: ballast, law: {kind: unilateral}}]"
+    own = run_plan(made(TRACK.format(more="", springs=springs)).plan)
+    known = run_plan(made(TRACK.format(more=", ballast: unilateral", springs="")).plan)
+    np.testing.assert_array_equal(own.sensor_displacement, known.sensor_displacement)
+
+
+CAR_OF_BODIES = """{span}
+train:
+  - vehicle: multibody
+    bodies: [{{name: body, mass: 10.5 t, inertia: 50 t m^2, position: 2 m}}]
+    wheels: [{{position: 0 m, mass: 900 kg}}, {{position: 5 m, mass: 900 kg}}]
+    suspensions:
+      - {{between: [body, wheel1], stiffness: 600 kN/m, damping: 10 kNs/m{front}}}
+      - {{between: [wheel2, body], stiffness: 600 kN/m, damping: 10 kNs/m{rear}}}
+crossing: {{speed: 30 m/s, irregularity: {{kind: harmonic, amplitude: 4 mm, wavelength: 8 m}}}}
+analysis: {{time_step: 0.5 ms, steps: 700}}
+"""
+
+
+def test_bump_stops_and_friction_of_suspensions(made):
+    """The same as springs between d.o.f. in Python; a stop that is never reached changes nothing."""
+    from dataclasses import replace
+
+    from axlespan.model.nonlinear import BilinearHysteresis, UnilateralSpring
+    from axlespan.vehicles.nonlinear import with_nonlinear_spring
+
+    front = ", bump_stop: {gap: 4 mm, stiffness: 20 MN/m, damping: 5 kNs/m}"
+    rear = ", law: {kind: hysteresis, stiffness: 20 MN/m, yield_force: 2 kN}"
+    plan = made(CAR_OF_BODIES.format(span=SPAN, front=front, rear=rear)).plan
+    result = run_plan(plan)
+    plain = made(CAR_OF_BODIES.format(span=SPAN, front="", rear="")).plan
+    linear = run_plan(plain)
+    (item,) = plain.crossing.placements
+    at_front = {"body.z": 1.0, "body.pitch": -2.0, "wheel1.z": -1.0}  # pitch lowers the front
+    at_rear = {"body.z": 1.0, "body.pitch": 3.0, "wheel2.z": -1.0}
+    car = with_nonlinear_spring(item.vehicle, UnilateralSpring(20e6, 5e3), at_front, gap=4e-3)
+    car = with_nonlinear_spring(car, BilinearHysteresis(20e6, 2e3), at_rear)
+    own = asp.simulate(
+        replace(plain.crossing, train=asp.Train.of(car)),
+        time_step=5e-4,
+        steps=700,
+        method=plain.settings.method,
+        footprint=plain.settings.footprint,
+    )
+    np.testing.assert_allclose(result.contact_force, own.contact_force, rtol=1e-9)
+    names, motion = result.vehicle_dof, result.vehicle_displacement
+    e = sum(factor * motion[:, names.index(f"1.{dof}")] for dof, factor in at_front.items())
+    reached = np.flatnonzero(e < -4e-3)
+    assert len(reached) > 10
+    before = slice(0, reached[0])
+    assert np.abs(result.contact_force[before] - linear.contact_force[before]).max() > 100.0  # friction
+    far = ", bump_stop: {gap: 90 mm, stiffness: 20 MN/m}"
+    never = run_plan(made(CAR_OF_BODIES.format(span=SPAN, front=far, rear=far)).plan)
+    np.testing.assert_allclose(never.contact_force, linear.contact_force, rtol=1e-9)

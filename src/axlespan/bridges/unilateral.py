@@ -7,14 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
-import scipy.sparse as sp
 
+from axlespan.bridges.spring_laws import springs_of
 from axlespan.errors import InputError
-from axlespan.model.assembly import element_dofs
-from axlespan.model.compile import dof_table
-from axlespan.model.dofs import nearest
 from axlespan.model.nonlinear import UnilateralSpring
-from axlespan.model.parts import SpringPart
 from axlespan.model.system import SpringRows
 from axlespan.running.structure import Structure
 
@@ -50,32 +46,13 @@ def with_unilateral_springs(
     InputError
         If there is no such group, it has no such component, or a gap is not positive or named twice for a spring.
     """
-    model = structure.model
-    if model is None:
-        raise InputError("must be a finite element model", field="structure", value=structure.name)
-    parts = [part for part in model.parts if part.name == group and isinstance(part, SpringPart)]
-    if not parts:
-        known = list(dict.fromkeys(p.name for p in model.parts if isinstance(p, SpringPart)))
-        raise nearest(group, known, "group of springs")
-    table, elimination = dof_table(model), structure.system.elimination
+    if any(springs.name == group for springs in structure.system.nonlinear):
+        raise InputError("follow a law already", field="group", value=group)
     rows: list[SpringRows] = []
-    for part in parts:
-        if component not in part.components:
-            raise InputError(f"has no springs along {component}", field="group", value=group)
-        at, n_component = part.components.index(component), len(part.components)
-        dofs = element_dofs(part, table)[:, [at, at + n_component]]
-        turned = model.points[part.nodes[:, 0], 2] > model.points[part.nodes[:, 1], 2]
-        dofs[turned] = dofs[turned, ::-1]
-        places = model.points[part.nodes[:, 1], 0]
-        gaps = _gaps(places, hanging)
-        own = np.flatnonzero(part.stiffness[:, at] > 0.0)
-        n = len(own)
-        unit = sp.coo_array(
-            (np.tile([-1.0, 1.0], n), (np.repeat(np.arange(n), 2), dofs[own].ravel())), (n, table.size)
-        )
-        elongation = sp.csr_array(sp.csr_array(unit) @ elimination)
-        law = UnilateralSpring(part.stiffness[own, at], part.damping[own, at])
-        rows.append(SpringRows(group, law, elongation, gaps[own], law.stiffness, law.damping))
+    for found in springs_of(structure, group, component, dashpots=False):
+        law = UnilateralSpring(found.stiffness, found.damping)
+        gaps = _gaps(found.places, hanging)
+        rows.append(SpringRows(group, law, found.rows, gaps, law.stiffness, law.damping))
     system = replace(structure.system, nonlinear=(*structure.system.nonlinear, *rows))
     return replace(structure, system=system)
 

@@ -35,7 +35,8 @@ class NoiseMonitor:
 
     def __init__(self, static: FloatArray, coupled: IntArray) -> None:
         self._coupled = coupled
-        self._scale = np.maximum(np.abs(static[coupled]), 1e-30)
+        size = np.abs(static[coupled])
+        self._scale = np.where(size > 0.0, size, np.inf)  # without gravity there is nothing to relate to
         self._last = np.zeros((0, len(coupled)))
         self._squares = np.zeros((0, len(coupled)))
         self._worst = np.zeros(len(coupled))

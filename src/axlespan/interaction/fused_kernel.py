@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from axlespan.interaction.lane_tuples import plus, put, read, scaled, size
 from axlespan.linalg.compiled import as_compiled
 
 # A response to contact that is so much smaller than its largest value is none; asked every so many rows.
@@ -31,8 +32,7 @@ def forward(
     ``state`` holds u, u̇, ü; ``x`` accelerations of the step before, then y; ``added`` is what contact adds from row
     ``reach[0]`` to ``reach[1]``; ``ring`` predictions (1+α) ũ - α u and (1+α) ṽ - α u̇ of the latest rows.
     """
-    L, w, one = np.uint64(len(lanes)), np.uint64(len(width)), np.uint64(1)
-    single = len(lanes) == 1
+    L, w, zero, one = np.uint64(len(lanes)), np.uint64(len(width)), np.uint64(0), np.uint64(1)
     u, v, a = state
     mean_u, mean_v = ring
     mask = np.uint64(mean_u.shape[0] // len(lanes) - 1)
@@ -43,67 +43,41 @@ def forward(
     u1, u2, u3, v2, v3 = p[2, 0], p[2, 1], p[2, 2], p[3, 1], p[3, 2]
     low, high = np.uint64(reach[0]), np.uint64(reach[1])
     rows = n + np.uint64(ahead) if goes_on else n
-    last = 0.0
+    none = scaled(0.0, read(lanes, u, zero))
+    last = none
     for i in range(rows):
         if i < n:
-            at = i * L
-            into = (i & mask) * L
+            at, into = i * L, (i & mask) * L
             if completes:
-                inside = low <= i and i < high
-                for c in range(L):
-                    new = x[(i + w) * L + c]
-                    if inside:
-                        new += added[(i + w) * L + c]
-                    u0, v0, a0 = u[at + c], v[at + c], a[at + c]
-                    u[at + c] = (u0 + (dt * v0 + late_u * a0)) + u_from_a * new
-                    v[at + c] = (v0 + late_v * a0) + v_from_a * new
-                    a[at + c] = new
-            for c in range(L):
-                mean_u[into + c] = u1 * u[at + c] + (u2 * v[at + c] + u3 * a[at + c])
-                mean_v[into + c] = v2 * v[at + c] + v3 * a[at + c]
+                u0, v0, a0, new = read(lanes, u, at), read(lanes, v, at), read(lanes, a, at), read(lanes, x, at + w * L)
+                if low <= i and i < high:
+                    new = plus(new, 1.0, read(lanes, added, at + w * L))
+                put(u, at, plus(plus(u0, 1.0, plus(scaled(dt, v0), late_u, a0)), u_from_a, new))
+                put(v, at, plus(plus(v0, late_v, a0), v_from_a, new))
+                put(a, at, new)
+            u0, v0, a0 = read(lanes, u, at), read(lanes, v, at), read(lanes, a, at)
+            put(mean_u, into, plus(plus(scaled(u2, v0), u3, a0), u1, u0))
+            put(mean_v, into, plus(scaled(v2, v0), v3, a0))
         if not goes_on or i < ahead:
             continue
         j = i - np.uint64(ahead)
         k = j + w
-        if single:
-            total = extra[j] if forced else 0.0
-            for q in range(starts[j], starts[j + one]):
-                total -= entries[q] * mean_u[columns[q] & mask]
-            if damped:
-                for q in range(c_starts[j], c_starts[j + one]):
-                    total -= c_entries[q] * mean_v[c_columns[q] & mask]
-            for e in range(len(width) - 1):  # the newest row comes last: all wait for it
-                d = w - np.uint64(e)
-                total -= lower[j, d] * x[k - d]
-            last = total - lower[j, one] * last
-            x[k] = last
-            continue
-        at = k * L
-        if forced:
-            for c in range(L):
-                x[at + c] = extra[j * L + c]
-        else:
-            for c in range(L):
-                x[at + c] = 0.0
+        t = read(lanes, extra, j * L) if forced else none
         for q in range(starts[j], starts[j + one]):
-            entry, where = entries[q], (columns[q] & mask) * L
-            for c in range(L):
-                x[at + c] -= entry * mean_u[where + c]
+            t = plus(t, -entries[q], read(lanes, mean_u, (columns[q] & mask) * L))
         if damped:
             for q in range(c_starts[j], c_starts[j + one]):
-                entry, where = c_entries[q], (c_columns[q] & mask) * L
-                for c in range(L):
-                    x[at + c] -= entry * mean_v[where + c]
-        for e in range(len(width)):
+                t = plus(t, -c_entries[q], read(lanes, mean_v, (c_columns[q] & mask) * L))
+        for e in range(len(width) - 1):
             d = w - np.uint64(e)
-            entry, where = lower[j, d], (k - d) * L
-            for c in range(L):
-                x[at + c] -= entry * x[where + c]
+            t = plus(t, -lower[j, d], read(lanes, x, (k - d) * L))
+        last = plus(t, -lower[j, one], last)  # the newest row comes last: all wait for it
+        put(x, k * L, last)
 
 
 @as_compiled
 def eliminate(lanes: Any, width: Any, lower: Any, x: Any, begin: Any, must: Any) -> Any:
-    """L y = b in place from row ``begin`` on, at least to row ``must``; the row behind the last one that is not nothing."""
+    """L y = b in place from row ``begin`` on, at least to row ``must``; the row behind the last that is not nothing."""
     L, w = np.uint64(len(lanes)), np.uint64(len(width))
     n = np.uint64(lower.shape[0]) - w
     i, largest = np.uint64(begin), 0.0
@@ -112,13 +86,12 @@ def eliminate(lanes: Any, width: Any, lower: Any, x: Any, begin: Any, must: Any)
         here = 0.0
         for j in range(i, stop):
             k = j + w
+            t = read(lanes, x, k * L)
             for e in range(len(width)):
                 d = w - np.uint64(e)
-                entry = lower[j, d]
-                for c in range(L):
-                    x[k * L + c] -= entry * x[(k - d) * L + c]
-            for c in range(L):
-                here = max(here, abs(x[k * L + c]))
+                t = plus(t, -lower[j, d], read(lanes, x, (k - d) * L))
+            put(x, k * L, t)
+            here = max(here, size(t))
         i, largest = stop, max(largest, here)
         if i > must and here <= _NOTHING * largest:
             break
@@ -129,31 +102,20 @@ def eliminate(lanes: Any, width: Any, lower: Any, x: Any, begin: Any, must: Any)
 def backward(lanes: Any, width: Any, lower: Any, x: Any, end: Any, must: Any) -> Any:
     """Lᵀ x = D⁻¹ y in place from row ``end`` back, at least to row ``must``; the last row that is not nothing."""
     L, w, zero, one = np.uint64(len(lanes)), np.uint64(len(width)), np.uint64(0), np.uint64(1)
-    i, largest, last = np.uint64(end), 0.0, x[(np.uint64(end) + w) * L]
+    i, largest, last = np.uint64(end), 0.0, read(lanes, x, (np.uint64(end) + w) * L)
     while i > zero:
         stop = i - min(i, np.uint64(_ROWS))
         here = 0.0
         for r in range(i - stop):
             j = i - one - np.uint64(r)
             k = j + w
-            pivot = lower[j, zero]
-            if len(lanes) == 1:
-                total = pivot * x[k]
-                for e in range(len(width) - 1):
-                    d = w - np.uint64(e)
-                    total -= lower[j + d, d] * x[k + d]
-                last = total - lower[j + one, one] * last
-                x[k] = last
-            else:
-                for c in range(L):
-                    x[k * L + c] *= pivot
-                for e in range(len(width)):
-                    d = w - np.uint64(e)
-                    entry = lower[j + d, d]
-                    for c in range(L):
-                        x[k * L + c] -= entry * x[(k + d) * L + c]
-            for c in range(L):
-                here = max(here, abs(x[k * L + c]))
+            t = scaled(lower[j, zero], read(lanes, x, k * L))
+            for e in range(len(width) - 1):
+                d = w - np.uint64(e)
+                t = plus(t, -lower[j + d, d], read(lanes, x, (k + d) * L))
+            last = plus(t, -lower[j + one, one], last)
+            put(x, k * L, last)
+            here = max(here, size(last))
         i, largest = stop, max(largest, here)
         if i < must and here <= _NOTHING * largest:
             break

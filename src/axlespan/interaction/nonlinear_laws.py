@@ -37,7 +37,15 @@ def laws_of(crossing: Crossing, settings: Settings) -> WheelLaws:
                         fix="Use a vehicle with masses, such as sprung-mass",
                     )
                 continue
-            laws.append(settings.contact if point.law is None else law_of(point.law))
+            law = settings.contact if point.law is None else law_of(point.law)
+            if law.kind != "rigid" and not force > 0.0:
+                raise InputError(
+                    f"needs wheels that press on the line: the static force of contact {name} is {force:g} N",
+                    field="contact",
+                    value=law.kind,
+                    fix="Check gravity and loads, or use contact: rigid",
+                )
+            laws.append(law)
             forces.append(force)
             radii.append(point.radius)
     return WheelLaws.of(laws, np.array(forces), radii)

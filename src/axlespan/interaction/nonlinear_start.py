@@ -30,6 +30,7 @@ from axlespan.interaction.start import (
     StartFactors,
     about_to_enter,
     condensed_stiffness,
+    entering,
 )
 from axlespan.linalg.factor import factorize
 
@@ -66,14 +67,18 @@ def nonlinear_start(
     if springs.n:
         deviation, _ = springs.static_deviation(elongation)  # exactly zero where a law follows its reference
     structure, vehicles = State.at_rest((plan.structure.size,)), State.at_rest((fleet.matrices.size,))
-    structure.u[:] = statics.deflection(forces, deviation)
-    vehicles.u[:] = _vehicles(plan, u_x)
+    standing = fleet.weight.copy()
+    standing[x] = forces
+    u_e, structure.v[:] = entering(plan, rows, standing)
+    structure.u[:] = statics.deflection(forces, deviation) + u_e
+    vehicles.u[:] = _vehicles(plan, u_x + (rows.E @ u_e)[x])
     touching = laws.rigid | (laws.unilateral & (forces + statics.stiffness * approach > 0.0))
     approach[touching] = 0.0
     speed, _ = plan.rows.motion(0.0)
-    vehicles.v[fleet.dofs] = (rows.rate + speed * (rows.E1 @ structure.u))[x]
+    vehicles.v[fleet.dofs] = (rows.rate + speed * (rows.E1 @ structure.u) + rows.E @ structure.v)[x]
     inner = -(springs.rows.T @ deviation) if springs.n else None
     forces[laws.unilateral & ~touching] = 0.0
+    forces[laws.may_part & (forces < _TOLERANCE * statics.scale)] = 0.0  # rounding is no tension
     total = _moving(balance, rows, (structure, vehicles), touching, forces, approach, inner)
     load = np.asarray(rows.E.T @ total)
     if springs.n:

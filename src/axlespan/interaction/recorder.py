@@ -129,7 +129,9 @@ class Recorder:
 
     def first_bad(self, tape: LaneTape) -> int | None:
         """The first step with a value that is not finite or a contact force that has run away."""
-        limit = _DIVERGED * max(float(np.abs(self.plan.fleet.weight).max()), 1.0)
+        fleet = self.plan.fleet
+        weight = float(np.abs(fleet.weight).max()) or 9.81 * float(fleet.matrices.M.sum())  # without gravity
+        limit = _DIVERGED * max(weight, 1.0)
         with np.errstate(all="ignore"):  # a sum is finite only if everything in it is
             totals = [part.sum() for part in (tape.vehicles, tape.near, tape.sums)]
             if np.isfinite(totals).all() and np.abs(tape.forces).max(initial=0.0) < limit:

@@ -80,7 +80,7 @@ def start_of(plan: Plan, factors: StartFactors | None = None) -> Start:
     n, n_contact = plan.structure.size, len(fleet.weight)
     external = plan.forces.at(0.0) if plan.forces.n_term else np.zeros(n)
     u_s, forces = _static(plan, plan.forces.static(0.0), rows, factors)
-    u_e, v_s = _entering(plan, rows, forces)
+    u_e, v_s = entering(plan, rows, forces)
     u_s = u_s + u_e
     u_v, forces = vehicles_at(fleet, forces, rows, u_s)
     structure, vehicles = State.at_rest((n,)), State.at_rest((fleet.matrices.size,))
@@ -157,7 +157,7 @@ def _static(
     return u_0 - columns @ forces[carried], forces
 
 
-def _entering(plan: Plan, rows: ContactRows, forces: FloatArray) -> tuple[FloatArray, FloatArray]:
+def entering(plan: Plan, rows: ContactRows, forces: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Displacements and velocities (n,) under footprints that reach over a fixed end before their wheels.
 
     The share E of a wheel that the span carries grows with its way s like exp(ω t), ω = ṡ |E'| / |E|. Under a force

@@ -13,6 +13,9 @@ from axlespan.standards.verdict import FAIL, PASS, Verdict
 
 _COLORS = {PASS: COLORS[2], FAIL: COLORS[1]}
 
+# How units of verdicts are shown: factor and unit.
+_UNITS = {"m": (1e3, "mm"), "N": (1e-3, "kN"), "m/s^2": (1.0, "m/s²"), "-": (1.0, "")}
+
 # Longest bar: utilizations beyond are cut, with their number beside them.
 _LONGEST = 2.0
 
@@ -68,8 +71,10 @@ def verdict_bars(verdicts: Iterable[Verdict], *, ax: Axes | None = None) -> Axes
 
 
 def _said(used: float, verdict: Verdict) -> str:
-    """Value and limit in words: ``109 %: 3.81 of 3.5 m/s^2``."""
+    """Value and limit in words: ``109 %: 3.81, limit 3.5 m/s²``."""
+    assert verdict.value is not None  # there is no utilization without
+    assert verdict.limit is not None
     share = f"{100.0 * used:.0f} %" if math.isfinite(used) else "beyond"
     least = "at least " if verdict.at_least else ""
-    unit = "" if verdict.unit == "-" else verdict.unit.replace("^2", "²")
-    return f"{share}: {verdict.value:.3g}, limit {least}{verdict.limit:.3g} {unit}".rstrip()
+    scale, unit = _UNITS.get(verdict.unit, (1.0, verdict.unit))
+    return f"{share}: {scale * verdict.value:.3g}, limit {least}{scale * verdict.limit:.3g} {unit}".rstrip()

@@ -6,8 +6,10 @@ from collections.abc import Sequence
 
 from axlespan import vehicles
 from axlespan.errors import InputError
+from axlespan.model.nonlinear import SpringLaw, UnilateralSpring
 from axlespan.running.structure import Structure
 from axlespan.study import case_multibody
+from axlespan.study.case_laws import gap_of
 from axlespan.vehicles import BodyLoad, Placement, Train, Vehicle
 from axlespan.vehicles.vehicle import LEFT, RIGHT
 
@@ -39,12 +41,24 @@ def vehicle_of_bodies(case: case_multibody.Multibody) -> Vehicle:
                 s.side,
                 s.roll_stiffness,
                 s.roll_damping,
+                _laws(s),
             )
             for s in case.suspensions
         ],
         hinges=[vehicles.Hinge(_pair(h.between, i), h.at) for i, h in enumerate(case.hinges)],
         loads=body_loads(case.loads),
     )
+
+
+def _laws(case: case_multibody.Suspension) -> tuple[tuple[SpringLaw, float], ...]:
+    """The nonlinear springs of a suspension, and their gaps."""
+    laws: list[tuple[SpringLaw, float]] = []
+    if case.bump_stop is not None:
+        stop = case.bump_stop
+        laws.append((UnilateralSpring(stop.stiffness, stop.damping), stop.gap))
+    if case.law is not None:
+        laws.append((case.law.law(), gap_of(case.law)))
+    return tuple(laws)
 
 
 def body_loads(loads: Sequence[case_multibody.BodyLoad]) -> list[BodyLoad]:

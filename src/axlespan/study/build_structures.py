@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -16,10 +17,12 @@ from axlespan.bridges import (
     simple_spans,
 )
 from axlespan.bridges.condition import Damage, in_condition
+from axlespan.bridges.spring_laws import with_spring_law
 from axlespan.bridges.unilateral import with_unilateral_springs
 from axlespan.errors import InputError
+from axlespan.model.parts import SpringPart
 from axlespan.running.structure import Structure
-from axlespan.study import case_structure
+from axlespan.study import case_laws, case_structure
 from axlespan.study.build_matrices import structure_of_matrices
 from axlespan.study.build_mesh import structure_of_mesh
 from axlespan.study.build_supports import damping_of, supports_of_beams
@@ -43,6 +46,8 @@ def structure_of(case: case_structure.Structure) -> BuiltStructure:
         try:
             structure = with_unilateral_springs(built.structure, f"support {name}")
         except InputError as error:
+            if name in case.may_lift[:number]:  # type: ignore[union-attr]
+                raise InputError("is named twice", field=f"may_lift.{number}", value=name) from error
             raise InputError(
                 "must be a support with a stiffness along z",
                 field=f"may_lift.{number}",
@@ -50,6 +55,32 @@ def structure_of(case: case_structure.Structure) -> BuiltStructure:
                 fix="Give it stiffness: {z: 1 GN/m} in place of fixed",
             ) from error
         built = replace(built, structure=structure)
+    return _with_laws(built, getattr(case, "nonlinear_springs", ()))
+
+
+def _with_laws(built: BuiltStructure, springs: Sequence[case_laws.SpringsWithLaw]) -> BuiltStructure:
+    """The structure with springs that follow laws; a group of a track in space is meant with all its sides."""
+    model = built.structure.model
+    names = dict.fromkeys(p.name for p in model.parts if isinstance(p, SpringPart)) if model else {}
+    for number, item in enumerate(springs):
+        whole = [name for name in names if name == item.springs or name.partition("-")[0] == item.springs]
+        try:
+            structure = built.structure
+            for name in whole or [item.springs]:
+                gap = case_laws.gap_of(item.law)
+                structure = with_spring_law(
+                    structure, name, item.law.law, component=item.direction, gap=gap
+                )
+        except InputError as error:
+            across = error.rule.startswith("has no springs along")
+            field, fix = ("direction", "Use direction: z") if across else ("springs", error.fix)
+            raise InputError(
+                error.rule, field=f"nonlinear_springs.{number}.{field}", value=getattr(item, field), fix=fix
+            ) from error
+        count = len(structure.system.nonlinear) - len(built.structure.system.nonlinear)
+        n = sum(len(springs.gap) for springs in structure.system.nonlinear[-count:])
+        fact = f"law         {item.law.kind}: {n} springs of {item.springs} along {item.direction}"
+        built = replace(built, structure=structure, facts=(*built.facts, fact))
     return built
 
 

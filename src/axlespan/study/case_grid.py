@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from axlespan.study.case_damping import StructuralDamping
+from axlespan.study.case_laws import NonlinearSprings
 from axlespan.study.case_support import Bearing
 from axlespan.study.case_track import Laid
 from axlespan.study.check_lists import Several
@@ -69,5 +70,7 @@ class BeamGrid(Part):
     """Bearings at both ends of each girder; rigid when left out."""
     damping: StructuralDamping | None = None
     """Structural damping; none when left out."""
+    nonlinear_springs: NonlinearSprings = ()
+    """Springs and dashpots that follow a law: pads, ballast, supports. Own weight acts first then."""
     track: Laid = None
     """Track on the lines left and right of the first track, before and behind the deck."""

@@ -191,7 +191,7 @@ class BumpStop(Part):
 
 
 class SpringsWithLaw(Part):
-    """Springs of the structure that follow a law in place of their stiffness."""
+    """Springs of the structure that follow a law in place of their stiffness; a dashpot's, in place of their damping."""
 
     springs: Annotated[Text, Field(examples=["ballast"])]
     """Which: ballast, pads or fastening of a track, support and its name, springs.0 of a mesh."""

@@ -21,6 +21,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from axlespan.errors import InputError
+from axlespan.study.case_laws import BumpStop, Law, UnilateralLaw
 from axlespan.study.case_placing import Placed
 from axlespan.study.checks import Part
 from axlespan.study.faults import InputErrors, listed, nearest
@@ -98,6 +99,16 @@ class Suspension(Part):
     """Stiffness of an anti-roll bar between the two."""
     roll_damping: RollDashpot = 0.0
     """Damping of roll between the two."""
+    bump_stop: Annotated[BumpStop | None, Field(examples=["{gap: 30 mm, stiffness: 20 MN/m}"])] = None
+    """Stop between the two; the first of them is the upper one, unless it is a wheel."""
+    law: Law | None = None
+    """A nonlinear spring or dashpot beside those; it counts from the position of rest, and is positive when longer."""
+
+    @model_validator(mode="after")
+    def _whole_law(self) -> Self:
+        if isinstance(self.law, UnilateralLaw) and self.law.stiffness is None:
+            raise InputError("is missing", field="law.stiffness", fix="Add stiffness: 20 MN/m")
+        return self
 
 
 class Hinge(Part):
@@ -222,7 +233,14 @@ class Multibody(Placed):
                         InputError("no such body or wheel", field=f"{field}.between.{end}", fix=fix)
                     )
             if not any(
-                (suspension.stiffness, suspension.damping, suspension.roll_stiffness, suspension.roll_damping)
+                (
+                    suspension.stiffness,
+                    suspension.damping,
+                    suspension.roll_stiffness,
+                    suspension.roll_damping,
+                    suspension.bump_stop,
+                    suspension.law,
+                )
             ):
                 faults.append(
                     InputError("has no stiffness and no damping", field=field, fix="Add stiffness: 600 kN/m")

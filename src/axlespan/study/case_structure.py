@@ -11,6 +11,7 @@ from axlespan.study.case_condition import DamagedZone, Temperature
 from axlespan.study.case_damping import StructuralDamping
 from axlespan.study.case_grid import BeamGrid
 from axlespan.study.case_imported import MeshStructure
+from axlespan.study.case_laws import NonlinearSprings
 from axlespan.study.case_matrices import MatricesStructure
 from axlespan.study.case_support import Bearing, MayLift, Springs, Support
 from axlespan.study.case_track import Laid, TrackStructure
@@ -71,6 +72,8 @@ class SimpleSpan(Part):
     """Temperature that the stiffness follows; no effect when left out."""
     may_lift: MayLift = ()
     """Supports on springs that only push: bearings that may lift. Own weight acts first then."""
+    nonlinear_springs: NonlinearSprings = ()
+    """Springs and dashpots that follow a law: pads, ballast, supports. Own weight acts first then."""
     track: Laid = None
     """Track on the bridge, before and behind it; wheels run on the deck when left out."""
 
@@ -137,6 +140,8 @@ class _Spans(BeamProperties):
     """Temperature that the stiffness follows; no effect when left out."""
     may_lift: MayLift = ()
     """Supports on springs that only push: bearings that may lift. Own weight acts first then."""
+    nonlinear_springs: NonlinearSprings = ()
+    """Springs and dashpots that follow a law: pads, ballast, supports. Own weight acts first then."""
     track: Laid = None
     """Track on the bridge, before and behind it; wheels run on the deck when left out."""
 

@@ -41,6 +41,11 @@ def read_spectrum(path: str | Path) -> Spectrum:
     ``[mm^2/(1/m)]``, ``[m^3]``, ``[m^2/(rad/m)]`` and the like. Fields are separated by semicolons, tabs or commas;
     with semicolons and tabs a comma may be a decimal comma. Empty lines and what follows a ``#`` are skipped.
 
+    Parameters
+    ----------
+    path : path
+        A table of wavenumbers and densities.
+
     Raises
     ------
     InputError
