@@ -10,9 +10,9 @@ import numpy as np
 
 import axlespan as asp
 from axlespan.interaction.contact_system import path_compliance, rows_of, solve_contact
+from axlespan.interaction.groundwork import prepare
 from axlespan.interaction.plan import plan_for
 from axlespan.interaction.settings import settings_for
-from axlespan.interaction.simulate import prepare
 from axlespan.model.compile import compile_model
 from axlespan.model.model import Model
 from axlespan.running.line import path_on_beams

@@ -58,7 +58,11 @@ def test_pages_with_code_are_found():
 @pytest.mark.parametrize("page", WITH_PYTHON, ids=lambda page: page.name)
 def test_python_blocks_run(page):
     space: dict[str, object] = {}
-    exec(compile("\n".join(blocks(page, "python")), page.name, "exec"), space)
+    try:
+        exec(compile("\n".join(blocks(page, "python")), page.name, "exec"), space)
+    finally:
+        if "matplotlib.pyplot" in sys.modules:
+            sys.modules["matplotlib.pyplot"].close("all")
     if page.name == "README.md":
         result = space["result"]
         assert result.contact_force.shape == (14_001, 50)  # (time, contact)

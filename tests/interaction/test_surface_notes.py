@@ -42,8 +42,8 @@ WAVES = ir.Harmonic(1e-3, 5.0)
     [
         (ir.Harmonic(1e-3, 5.0, start=1.25, stop=7.5), "1 mm at 1.25 m"),
         (ir.Bounded(WAVES, 0.0, 3.75), "1 mm at 3.75 m"),
-        (ir.Table([2.0, 4.0, 6.0], [0.0, 1e-3, 2e-3]), "-2 mm at 6 m"),
-        (ir.Shifted(ir.Table([0.0, 4.0], [3e-4, 0.0]), 1.0), "0.3 mm at 1 m"),
+        (ir.Bounded(ir.Table([2.0, 4.0, 6.0], [0.0, 1e-3, 2e-3]), 0.0, 6.0), "-2 mm at 6 m"),
+        (ir.Shifted(ir.Bounded(ir.Table([0.0, 4.0], [3e-4, 0.0]), 0.0, 4.0), 1.0), "0.3 mm at 1 m"),
         (
             ir.Sum((WAVES, ir.Scaled(ir.Bounded(ir.Harmonic(1e-3, 5.0, np.pi / 2), 5.0), 0.5))),
             "0.5 mm at 5 m",
@@ -62,7 +62,7 @@ def test_steps_are_told(beam, profile, step):
         ir.Harmonic(1e-3, 5.0, start=0.0, stop=5.0),
         ir.Bounded(WAVES, 1.0, 9.0, taper=2.0),
         ir.Ramp(1.0, 5.0, 2e-3),
-        ir.Table([100.0, 110.0], [1e-3, 2e-3]),  # where no wheel comes
+        ir.Table([2.0, 4.0, 6.0], [0.0, 1e-3, 2e-3]),  # the heights of its ends go on
     ],
 )
 def test_even_ends_are_fine(beam, profile):

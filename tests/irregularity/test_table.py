@@ -11,8 +11,8 @@ from axlespan.errors import InputError
 TABLE = ir.Table([0.0, 2.0, 3.0], [0.0, 4e-3, 1e-3])
 
 
-def test_table_is_linear_between_points_and_zero_outside():
-    np.testing.assert_allclose(TABLE.value([-1.0, 0.0, 1.0, 2.5, 3.0, 3.1]), [0, 0, 2e-3, 2.5e-3, 1e-3, 0])
+def test_table_is_linear_between_points_and_its_ends_go_on():
+    np.testing.assert_allclose(TABLE.value([-1.0, 0.0, 1.0, 2.5, 3.0, 3.1]), [0, 0, 2e-3, 2.5e-3, 1e-3, 1e-3])
 
 
 def test_slope_is_that_of_the_piece_to_the_right():
@@ -122,3 +122,17 @@ def test_a_unit_that_is_no_length_is_refused(tmp_path):
     path.write_text("x [m]; r [kN]\n0; 0\n1; 1\n")
     with pytest.raises(InputError, match=r"p\.csv:1: r \[kN\]: must be a length; 'kN' is a force"):
         ir.Table.from_csv(path)
+
+
+def test_ends_go_on_in_integral_and_spline():
+    """The antiderivative against a sum over a fine grid, far beyond both ends."""
+    x, r = np.array([0.0, 1.0, 3.0]), np.array([2e-3, 0.0, 1e-3])
+    grid = np.linspace(-5.0, 9.0, 140_001)
+    for profile in (ir.Table(x, r), ir.Spline(x, r)):
+        assert profile.value([-5.0, 9.0]).tolist() == pytest.approx([2e-3, 1e-3])
+        assert profile.slope([-5.0, 9.0]).tolist() == [0.0, 0.0]
+        exact = profile.integral(9.0) - profile.integral(-5.0)
+        values = profile.value(grid)
+        assert exact == pytest.approx(
+            float(np.sum(0.5 * (values[1:] + values[:-1]) * np.diff(grid))), rel=1e-6
+        )

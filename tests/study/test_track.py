@@ -23,9 +23,15 @@ ON_GROUND = (
 )
 
 
+EARLIER = (
+    "speed: 80 km/h",
+    "speed: 80 km/h\n  start: -15 m",
+)  # before the bridge, where rails at rest do no harm
+
+
 class TestTrack:
     def test_of_a_word(self, loaded):
-        built = build(loaded(*tracked("ballasted")))
+        built = build(loaded(*tracked("ballasted"), EARLIER))
         structure = built.crossing.structure
         assert set(structure.lines) == {"main", "rail", "deck"}
         assert structure.line("deck").stop == 25.0
@@ -85,11 +91,16 @@ class TestTrack:
         assert rail < 1.05 * deck < 0.0
 
     def test_a_short_approach_is_warned_of(self, loaded):
-        built = build(loaded(*tracked("{kind: ballasted, approach: 18 m}")))
+        built = build(loaded(*tracked("{kind: ballasted, approach: 18 m}"), EARLIER))
         assert built.cautions == (
             "case.yaml: structure: track: approach = 18 m is shorter than the run-in of 15 m and 10 characteristic "
             "lengths of 0.867 m: the bridge may feel where the track ends; use at least 23.7 m",
         )
+
+    def test_a_start_at_the_bridge_is_warned_of(self, loaded):
+        (word,) = build(loaded(*tracked("ballasted"))).cautions
+        assert "starts at the bridge, on a track that does not move yet" in word
+        assert "at -10 m or further away" in word
 
 
 class TestSleepers:

@@ -229,6 +229,10 @@ def test_a_taper_fades_an_irregularity_in_and_out(edited, kind):
         ("kind: spectrum, seed: 1, name: german-low, file: s.csv", "file = s.csv: says again what name says"),
         ("kind: spectrum, seed: 1, file: s.csv, rails: [left, right]", "needs the level and the cross level"),
         ("kind: spectrum, seed: 1, file: t.csv", "file = t.csv: no such file"),
+        (
+            "kind: spectrum, seed: 1, name: german-low, wavelengths: [1 m, 80 m]",
+            "irregularity.wavelengths = [1 m, 80 m]: lie outside the range of german-low, wavelengths from 3 m to 150 m. Stay",
+        ),
         ("kind: spectrum, seed: 1, name: german-low, taper: 5 m", "taper = 5 m: goes with from and to"),
         ("kind: spectrum, seed: 1, name: german-low, from: 0 m, to: 8 m, taper: 5 m", "taper = 5 m: must be at most 4 m"),
     ],

@@ -13,7 +13,7 @@ from axlespan.errors import InputError
 from axlespan.model.assembly import element_dofs
 from axlespan.model.compile import dof_table
 from axlespan.model.dofs import nearest
-from axlespan.model.nonlinear import SpringLaw, UnilateralSpring
+from axlespan.model.nonlinear import ScaledLaw, SpringLaw, UnilateralSpring
 from axlespan.model.parts import SpringPart
 from axlespan.model.system import SpringRows
 from axlespan.running.structure import Structure
@@ -33,6 +33,9 @@ def with_spring_law(
     and springs stay; a one-sided spring takes the place of both. What it replaces stays in the matrices as a reference:
     modes and Rayleigh damping know that, and a spring that follows it is no unknown of a step. A run rests under its
     own weight first, and displacements count from there.
+
+    Where the group is stiffer or softer than at most places, as in zones and run-ins of tracks, forces of
+    the law are so, too.
 
     Parameters
     ----------
@@ -68,14 +71,36 @@ def with_spring_law(
         raise InputError("follow a law already", field="group", value=group, fix="Keep one of the two")
     rows = []
     for found in springs_of(structure, group, component):
-        own = law(found.stiffness, found.damping) if callable(law) else law
         gaps = np.full(len(found.stiffness), float(gap))
+        own = law(found.stiffness, found.damping) if callable(law) else law
         is_dashpot, is_both = not np.any(own.stiffness), isinstance(own, UnilateralSpring)
+        usual = found.damping if is_dashpot else found.stiffness
+        if not np.all(usual > 0.0):
+            raise InputError(
+                f"have no {'damping' if is_dashpot else 'stiffness'} that the law could take the place of",
+                field="group",
+                value=group,
+            )
+        if not callable(law):
+            own = ScaledLaw(law, shares(usual))
         k = np.zeros_like(gaps) if is_dashpot else found.stiffness
         c = found.damping if is_dashpot or is_both else np.zeros_like(gaps)
         rows.append(SpringRows(name, own, found.rows, gaps, k, c))
     system = replace(structure.system, nonlinear=(*structure.system.nonlinear, *rows))
     return replace(structure, system=system)
+
+
+def shares(values: FloatArray) -> FloatArray:
+    """Values (n,), all positive, over the one that most of them have.
+
+    Examples
+    --------
+    >>> shares(np.array([130e6, 65e6, 130e6, 260e6])).tolist()
+    [1.0, 0.5, 1.0, 2.0]
+    """
+    rounded = np.round(np.log(values), 6)
+    _, first, count = np.unique(rounded, return_index=True, return_counts=True)
+    return np.asarray(values / values[first[int(np.argmax(count))]])
 
 
 @dataclass(frozen=True, eq=False)

@@ -36,9 +36,10 @@ def forward(
     u, v, a = state
     mean_u, mean_v = ring
     mask = np.uint64(mean_u.shape[0] // len(lanes) - 1)
-    starts, columns, entries = K
-    c_starts, c_columns, c_entries = C
-    n = np.uint64(starts.shape[0] - 1)
+    columns, entries = K
+    c_columns, c_entries = C
+    n = np.uint64(u.shape[0]) // L
+    in_row, c_in_row = np.uint64(len(columns)) // n, np.uint64(len(c_columns)) // n
     dt, late_u, late_v, u_from_a, v_from_a = late
     u1, u2, u3, v2, v3 = p[2, 0], p[2, 1], p[2, 2], p[3, 1], p[3, 2]
     low, high = np.uint64(reach[0]), np.uint64(reach[1])
@@ -63,10 +64,10 @@ def forward(
         j = i - np.uint64(ahead)
         k = j + w
         t = read(lanes, extra, j * L) if forced else none
-        for q in range(starts[j], starts[j + one]):
+        for q in range(j * in_row, (j + one) * in_row):
             t = plus(t, -entries[q], read(lanes, mean_u, (columns[q] & mask) * L))
         if damped:
-            for q in range(c_starts[j], c_starts[j + one]):
+            for q in range(j * c_in_row, (j + one) * c_in_row):
                 t = plus(t, -c_entries[q], read(lanes, mean_v, (c_columns[q] & mask) * L))
         for e in range(len(width) - 1):
             d = w - np.uint64(e)

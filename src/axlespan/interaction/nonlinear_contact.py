@@ -297,7 +297,8 @@ class NonlinearCoupling:
         on = laws.rigid | (laws.unilateral & (forces > 0.0))
         approach[on] = 0.0
         landed = on & laws.unilateral & ~self.touching
-        self.loss -= 0.5 * float(forces[landed] @ self.approach[landed])  # the step that closes the gap takes this
+        # The step that closes a gap takes energy, and the impulse after it.
+        self.loss -= 0.5 * float(forces[landed] @ self.approach[landed])
         closing = self._closing_rates(free)
         self.touching = on
         if landed.any():

@@ -35,6 +35,9 @@ _DIVERGED = 1e4
 
 _QUANTITIES = ("displacement", "velocity", "acceleration")
 
+# Steps, and bytes of their tapes, that are gathered before they are worked up: many at a time cost less each.
+_GATHERED, _GATHERED_BYTES = 1024, 750_000
+
 
 @dataclass(eq=False)
 class Histories:
@@ -88,6 +91,9 @@ class Recorder:
         more = [keeper.free_dofs for keeper in self._keepers]
         self.selected = np.unique(np.concatenate([own, *more]))
         self._inverse, *self._more = (np.searchsorted(self.selected, dofs) for dofs in (own, *more))
+        self._gathered: list[tuple[IntArray, FloatArray, LaneTape]] = []
+        # Nonlinear couplings set things anew from step to step, which must be read in time.
+        self._at_once = plan.is_nonlinear
         self.completed = 0  # time index of the last good step
         self.finite = True
 
@@ -108,10 +114,26 @@ class Recorder:
             self.watchers.look(0, structure, vehicles, load, forces[self.plan.fleet.coupled])
 
     def work_up(self, steps: IntArray, positions: FloatArray, tape: LaneTape) -> None:
-        """Work up the tape of consecutive good steps: histories, reactions, peaks, checks."""
-        self._take(steps, positions, tape)
+        """Work up the tape of consecutive good steps, at once or later: histories, reactions, peaks, checks."""
+        if self._at_once:
+            self._take(steps, positions, tape)
+        else:
+            self._gathered.append((steps, positions, tape.copied()))
+            self.completed = int(steps[-1])
+            if (
+                sum(len(some) for some, _, _ in self._gathered) >= _GATHERED
+                or sum(where.nbytes + own.nbytes for _, where, own in self._gathered) >= _GATHERED_BYTES
+            ):
+                self._work_off()
         if self._progress is not None:
             self._progress(self.completed)
+
+    def _work_off(self) -> None:
+        """Work up what has been gathered."""
+        gathered, self._gathered = self._gathered, []
+        if gathered:
+            steps, positions, tapes = zip(*gathered, strict=True)
+            self._take(np.concatenate(steps), np.concatenate(positions), LaneTape.joined(tapes))
 
     def broken_off(
         self, steps: IntArray, positions: FloatArray, tape: LaneTape, n_good: int, message: str | None
@@ -120,6 +142,7 @@ class Recorder:
 
         Without a message the step after the good ones holds a value that is not finite or out of bounds.
         """
+        self._work_off()
         if n_good:
             self._take(steps[:n_good], positions[:n_good], tape.upto(n_good))
         if message is not None:
@@ -200,6 +223,7 @@ class Recorder:
     def result(self, outcome: Outcome, facts: Mapping[str, Any]) -> Result:
         """The result up to the last good step."""
         plan, h = self.plan, self.histories
+        self._work_off()
         self.tension.finish()
         n = self.completed // self.every + 1
         return Result(

@@ -18,6 +18,7 @@ from axlespan.interaction.bodies import PreparedStructure
 from axlespan.interaction.convoy import Couple, Lane, drive
 from axlespan.interaction.crossing import Crossing
 from axlespan.interaction.fused import FusedMarch
+from axlespan.interaction.groundwork import Groundwork, basis_for, prepare_reduced, translations
 from axlespan.interaction.iterative import IterativeCoupling
 from axlespan.interaction.literal import couple_literally
 from axlespan.interaction.march import couple_directly
@@ -25,7 +26,6 @@ from axlespan.interaction.nonlinear import begin_nonlinear, watch
 from axlespan.interaction.plan import Plan, plan_for
 from axlespan.interaction.progress_bar import reporting
 from axlespan.interaction.recorder import Recorder
-from axlespan.interaction.reduced_body import PreparedReduced
 from axlespan.interaction.reduction_error import ReductionError, ringing_runs
 from axlespan.interaction.refactored import couple_by_refactoring
 from axlespan.interaction.result import Result
@@ -37,9 +37,8 @@ from axlespan.running.structure import Structure
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-# Blocks of Ritz vectors and cut-offs of the bases that are tried, from lean to rich; and the usual one.
+# Blocks of Ritz vectors and cut-offs of the bases that are tried, from lean to rich.
 _BASES = ((2, 1e-2), (2, 1e-3), (3, 1e-4), (4, 1e-5), (6, 1e-6))
-_USUAL_BASIS = (3, 1e-4)
 # A richer basis is of no use when less than this share of the error comes from the basis.
 _SHARE_OF_BASIS = 0.2
 
@@ -283,39 +282,38 @@ def run_plan(plan: Plan, progress: Callable[[int], None] | None = None) -> Resul
     return result
 
 
-def run_plans(plans: Sequence[Plan], progress: Callable[[int], None] | None = None) -> list[Result]:
-    """Compute compiled crossings of one structure side by side; failed ones are among the results."""
+def run_plans(
+    plans: Sequence[Plan],
+    progress: Callable[[int], None] | None = None,
+    groundwork: Groundwork | None = None,
+) -> list[Result]:
+    """Compute compiled crossings of one structure side by side; failed ones are among the results.
+
+    ``groundwork`` of an earlier call saves factoring the structure again; it must serve these plans.
+    """
     settings = plans[0].settings
     if len(plans) > 1 and any(plan.is_nonlinear for plan in plans):
-        return [result for plan in plans for result in run_plans([plan], progress)]
-    if settings.basis == "full":
-        return _driven(plans, progress, prepare(plans), None)
-    if isinstance(settings.basis, ReducedBasis):
-        return _driven(plans, progress, _prepare_reduced(plans, settings.basis), settings.basis)
-    return _refined(plans, progress)
+        return [result for plan in plans for result in run_plans([plan], progress, groundwork)]
+    if settings.basis_tolerance is not None and settings.basis != "full" and not isinstance(settings.basis, ReducedBasis):
+        return _refined(plans, progress, settings.basis_tolerance)
+    laid = groundwork if groundwork is not None and groundwork.serves(plans) else Groundwork.of(plans)
+    facts = {"basis_time": laid.seconds} if settings.basis == "reduced" else None
+    return _driven(plans, progress, laid.prepared, laid.basis, facts, laid.start)
 
 
-def _refined(plans: Sequence[Plan], progress: Callable[[int], None] | None) -> list[Result]:
+def _refined(
+    plans: Sequence[Plan], progress: Callable[[int], None] | None, tolerance: float
+) -> list[Result]:
     """Compute with richer and richer bases until the estimated error is within the tolerance."""
     results: list[Result] = []
-    tolerance = plans[0].settings.basis_tolerance
-    for blocks, cutoff in (_USUAL_BASIS,) if tolerance is None else _BASES:
+    for blocks, cutoff in _BASES:
         begun = time.perf_counter()
-        basis = reduced_basis(
-            plans[0].structure.K,
-            plans[0].structure.M,
-            _path_dofs(plans),
-            blocks=blocks,
-            cutoff=cutoff,
-            modes=plans[0].settings.basis_modes,
-            extra=_translations(plans[0].crossing.structure),
-            solver=plans[0].settings.solver,
-        )
+        basis = basis_for(plans, blocks, cutoff)
         seconds = time.perf_counter() - begun
-        results = _driven(plans, progress, _prepare_reduced(plans, basis), basis, {"basis_time": seconds})
+        results = _driven(plans, progress, prepare_reduced(plans, basis), basis, {"basis_time": seconds})
         worst = max(float(result.facts["reduction_error"]) for result in results)
         by_basis = max(float(result.facts["reduction_error_of_basis"]) for result in results)
-        if tolerance is None or worst <= tolerance or by_basis < _SHARE_OF_BASIS * worst:
+        if worst <= tolerance or by_basis < _SHARE_OF_BASIS * worst:
             break
     return results
 
@@ -326,10 +324,11 @@ def _driven(
     prepared: PreparedStructure,
     basis: ReducedBasis | None,
     facts: Mapping[str, Any] | None = None,
+    factors: StartFactors | None = None,
 ) -> list[Result]:
     begun = time.perf_counter()
     errors = [] if basis is None else [ReductionError(plan, basis) for plan in plans]
-    factors = StartFactors(plans[0])
+    factors = factors or StartFactors(plans[0])
     nonlinear = (
         begin_nonlinear(plans[0], factors) if plans[0].is_nonlinear else None
     )  # a single crossing then
@@ -357,36 +356,6 @@ def _driven(
     ]
 
 
-def _path_dofs(plans: Sequence[Plan]) -> IntArray:
-    return np.unique(np.concatenate([path.free.path_dofs for plan in plans for path in plan.rows.paths]))
-
-
-def prepare(plans: Sequence[Plan]) -> PreparedStructure:
-    """Factor the structure that the plans share."""
-    settings, path_dofs = plans[0].settings, _path_dofs(plans)
-    rows = max(plan.rows.n_contact * path.free.dofs.shape[1] for plan in plans for path in plan.rows.paths)
-    return PreparedStructure(
-        plans[0].structure,
-        settings.method,
-        settings.time_step,
-        path_dofs,
-        loaded=min(rows, len(path_dofs)),
-        solver=settings.solver,
-        threads=settings.threads,
-        lanes=len(plans),
-    )
-
-
-def _prepare_reduced(plans: Sequence[Plan], basis: ReducedBasis) -> PreparedReduced:
-    settings = plans[0].settings
-    if basis.vectors.shape[0] != plans[0].structure.size:
-        raise InputError(
-            f"is of a structure with {basis.vectors.shape[0]} d.o.f., not {plans[0].structure.size}",
-            field="basis",
-        )
-    return PreparedReduced(plans[0].structure, basis, settings.method, settings.time_step)
-
-
 def reduce_structure(
     structure: Structure, *, blocks: int = 3, cutoff: float = 1e-4, modes: int = 0, solver: str = "auto"
 ) -> ReducedBasis:
@@ -406,16 +375,9 @@ def reduce_structure(
         blocks=blocks,
         cutoff=cutoff,
         modes=modes,
-        extra=_translations(structure),
+        extra=translations(structure),
         solver=solver,
     )
-
-
-def _translations(structure: Structure) -> FloatArray:
-    """Rigid translations (n, 3 at most) of the free d.o.f."""
-    system = structure.system
-    shapes = [system.translation(component)[system.free] for component in ("x", "y", "z")]
-    return np.column_stack([shape for shape in shapes if np.any(shape)])
 
 
 def _result(lane: Lane, prepared: PreparedStructure, facts: Mapping[str, Any]) -> Result:

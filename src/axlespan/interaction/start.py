@@ -227,7 +227,9 @@ def condensed_stiffness(fleet: Fleet) -> FloatArray:
 
 def _elastic_share(fleet: Fleet, heights: FloatArray) -> FloatArray:
     """Change of the contact forces (n_contact,) from an uneven level under vehicles on many wheels."""
-    return np.asarray(condensed_stiffness(fleet) @ heights) if np.any(heights) else np.zeros(len(fleet.weight))
+    return (
+        np.asarray(condensed_stiffness(fleet) @ heights) if np.any(heights) else np.zeros(len(fleet.weight))
+    )
 
 
 def vehicles_at(

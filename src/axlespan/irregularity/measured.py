@@ -233,11 +233,11 @@ class Measurement:
         return estimate_psd(self.values, self.spacing, segment=segment)
 
     def table(self) -> Table:
-        """Return the profile that is linear between the samples, zero outside."""
+        """Return the profile that is linear between the samples; its ends go on."""
         return Table(self.x, self.values)
 
     def spline(self) -> Spline:
-        """Return the profile that is a cubic spline through the samples, zero outside."""
+        """Return the profile that is a cubic spline through the samples; its ends go on."""
         return Spline(self.x, self.values)
 
 

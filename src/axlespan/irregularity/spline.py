@@ -16,7 +16,9 @@ __all__ = ["Spline"]
 
 @dataclass(frozen=True, eq=False)
 class Spline:
-    """A natural cubic spline through points, zero outside them: slope and curvature are continuous between.
+    """A natural cubic spline through points: slope and curvature are continuous between them.
+
+    At their ends it goes on with the heights there.
 
     Parameters
     ----------
@@ -54,11 +56,13 @@ class Spline:
 
     def integral(self, x: ArrayLike) -> Array:
         """Return an antiderivative of r [m²], shaped like x."""
-        x = clipped(np.asarray(x, dtype=np.float64), float(self.x[0]), float(self.x[-1]))
-        return np.asarray(self._pieces[3](x), dtype=np.float64)
+        wanted = np.asarray(x, dtype=np.float64)
+        x = clipped(wanted, float(self.x[0]), float(self.x[-1]))
+        beyond = (wanted - x) * np.where(wanted < x, self.r[0], self.r[-1])
+        return np.asarray(beyond + self._pieces[3](x), dtype=np.float64)
 
     def _derivative(self, x: ArrayLike, order: int) -> Array:
         x = np.asarray(x, dtype=np.float64)
         start, stop = float(self.x[0]), float(self.x[-1])
         inside = np.asarray(self._pieces[order](clipped(x, start, stop)), dtype=np.float64)
-        return np.where(within(x, start, stop), inside, 0.0)
+        return inside if order == 0 else np.where(within(x, start, stop), inside, 0.0)

@@ -17,10 +17,10 @@ __all__ = ["Table"]
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """A profile that is linear between points and zero outside them.
+    """A profile that is linear between points and goes on at their ends with the heights there.
 
-    The slope is constant between points, at a point that of the piece to its right (zero at the last point);
-    the curvature is zero. A table that doesn't begin and end with r = 0 has a step there.
+    The slope is constant between points, at a point that of the piece to its right (zero from the last point
+    on); the curvature is zero. :class:`Bounded` makes it zero outside bounds.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ class Table:
 
     def value(self, x: ArrayLike) -> Array:
         """Return r(x) [m], shaped like x."""
-        return np.asarray(np.interp(np.asarray(x, dtype=np.float64), self.x, self.r, left=0.0, right=0.0))
+        return np.asarray(np.interp(np.asarray(x, dtype=np.float64), self.x, self.r))
 
     def slope(self, x: ArrayLike) -> Array:
         """Return dr/dx [-], shaped like x."""
@@ -92,7 +92,9 @@ class Table:
 
     def integral(self, x: ArrayLike) -> Array:
         """Return an antiderivative of r [m²], shaped like x."""
-        x = np.clip(np.asarray(x, dtype=np.float64), self.x[0], self.x[-1])
+        wanted = np.asarray(x, dtype=np.float64)
+        x = np.clip(wanted, self.x[0], self.x[-1])
+        beyond = (wanted - x) * np.where(wanted < x, self.r[0], self.r[-1])
         i = np.clip(np.searchsorted(self.x, x, side="right") - 1, 0, self.x.size - 2)
         dx = x - self.x[i]
-        return self._areas[i] + dx * (self.r[i] + 0.5 * dx * np.diff(self.r)[i] / np.diff(self.x)[i])
+        return beyond + self._areas[i] + dx * (self.r[i] + 0.5 * dx * np.diff(self.r)[i] / np.diff(self.x)[i])

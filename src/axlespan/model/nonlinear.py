@@ -321,6 +321,56 @@ class BilinearHysteresis:
         return np.asarray(0.5 * self.stiffness * (e - plastic) ** 2 + 0.5 * self._h * plastic**2)
 
 
+@dataclass(frozen=True, eq=False)
+class ScaledLaw:
+    """A law times a factor of each spring: where a group of springs is not everywhere as stiff.
+
+    Parameters
+    ----------
+    law : SpringLaw
+    factor : array (n_spring,)
+        Positive [-].
+    """
+
+    law: SpringLaw
+    factor: FloatArray
+
+    def __post_init__(self) -> None:
+        require_positive(float(np.min(self.factor)), "factor")
+
+    @property
+    def stiffness(self) -> float | FloatArray:
+        """Reference stiffness [N/m]."""
+        return self.factor * self.law.stiffness
+
+    @property
+    def reference_damping(self) -> float | FloatArray:
+        """Reference damping [N s/m]."""
+        return self.factor * self.law.reference_damping
+
+    @property
+    def n_state(self) -> int:
+        """What the law remembers."""
+        return self.law.n_state
+
+    def force(self, e: FloatArray, rate: FloatArray, state: FloatArray) -> FloatArray:
+        """That of the law, times the factor."""
+        return self.factor * self.law.force(e, rate, state)
+
+    def tangent(self, e: FloatArray, rate: FloatArray, state: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Those of the law, times the factor."""
+        k, c = self.law.tangent(e, rate, state)
+        return self.factor * k, self.factor * c
+
+    def advanced(self, e: FloatArray, rate: FloatArray, state: FloatArray) -> FloatArray:
+        """As the law does."""
+        return self.law.advanced(e, rate, state)
+
+    def energy(self, e: FloatArray, state: FloatArray) -> FloatArray:
+        """That of the law, times the factor."""
+        return self.factor * self.law.energy(e, state)
+
+
 def _table(points: Any, first: str, second: str) -> tuple[tuple[float, float], ...]:
     table = np.asarray(points, float)
     if table.ndim != 2 or table.shape[1] != 2 or len(table) < 2:

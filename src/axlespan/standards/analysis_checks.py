@@ -78,7 +78,11 @@ def critical_speed(given: Given) -> list[Verdict]:
     if not given.facts.frequencies:
         return [not_assessed(check, clause, quantity, "the frequencies of vertical bending are not known")]
     if regular is None:
-        reason = "the train has no regular distance that stands out: give coach_length"
+        several = given.crossing is not None and len(given.crossing.runs) > 1
+        words = (
+            "several trains are under way" if several else "the train has no regular distance that stands out"
+        )
+        reason = f"{words}: give coach_length"
         return [not_assessed(check, clause, quantity, reason, source=SPEEDS)]
     distance, whose = regular
     highest = OVERSPEED * max(given.assessment.line_speed or 0.0, given.speed)

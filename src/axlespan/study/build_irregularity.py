@@ -131,6 +131,10 @@ def _blaming_the_band(case: SpectrumIrregularity) -> Iterator[None]:
     try:
         yield
     except InputError as error:
+        if error.field == "n" and case.wavelengths is not None:
+            rule = error.rule.replace("lies", "lie", 1)
+            fix = "Stay inside, or write a spectrum of your own: file: spectrum.csv"
+            raise InputError(rule, field="wavelengths", fix=fix) from error
         if error.field != "length":
             raise
         field = "wavelengths" if case.components is None else "components"

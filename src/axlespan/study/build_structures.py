@@ -68,9 +68,9 @@ def _with_laws(built: BuiltStructure, springs: Sequence[case_laws.SpringsWithLaw
             structure = built.structure
             for name in whole or [item.springs]:
                 gap = case_laws.gap_of(item.law)
-                structure = with_spring_law(
-                    structure, name, item.law.law, component=item.direction, gap=gap
-                )
+                one_sided = isinstance(item.law, case_laws.UnilateralLaw)
+                law = item.law.law if one_sided else item.law.law()
+                structure = with_spring_law(structure, name, law, component=item.direction, gap=gap)
         except InputError as error:
             across = error.rule.startswith("has no springs along")
             field, fix = ("direction", "Use direction: z") if across else ("springs", error.fix)

@@ -75,7 +75,7 @@ class HarmonicIrregularity(Bounded):
 
 
 class TableIrregularity(Bounded):
-    """A measured profile, linear between its points."""
+    """A measured profile, linear between its points; the heights at its ends go on."""
 
     kind: Literal["table"]
     points: Annotated[tuple[tuple[float, float], ...], Table(Measured(LENGTH), UNEVENNESS)] | None = None

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import Annotated, Final, Literal, Self
 
+import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
+from axlespan.bridges.spring_laws import shares
 from axlespan.errors import InputError
 from axlespan.model.nonlinear import (
     BilinearHysteresis,
@@ -44,10 +46,10 @@ class UnilateralLaw(Part):
 
     def law(self, stiffness: float | FloatArray = 0.0, damping: float | FloatArray = 0.0) -> SpringLaw:
         """The law of springs of a stiffness [N/m] and damping [N s/m]."""
-        return UnilateralSpring(
-            stiffness if self.stiffness is None else self.stiffness,
-            damping if self.damping is None else self.damping,
-        )
+        k: float | FloatArray = stiffness if self.stiffness is None else self.stiffness
+        if self.stiffness is not None and np.ndim(stiffness):  # as stiff as the group in zones and run-ins
+            k = self.stiffness * shares(np.asarray(stiffness))
+        return UnilateralSpring(k, damping if self.damping is None else self.damping)
 
 
 class PowerLaw(Part):
@@ -142,7 +144,9 @@ class HysteresisLaw(Part):
     @model_validator(mode="after")
     def _softens(self) -> Self:
         if self.hardening >= self.stiffness:
-            raise InputError("must be below the stiffness", field="hardening", fix="Leave it out for friction")
+            raise InputError(
+                "must be below the stiffness", field="hardening", fix="Leave it out for friction"
+            )
         return self
 
     def law(self, stiffness: float | FloatArray = 0.0, damping: float | FloatArray = 0.0) -> SpringLaw:
@@ -196,7 +200,7 @@ class SpringsWithLaw(Part):
     springs: Annotated[Text, Field(examples=["ballast"])]
     """Which: ballast, pads or fastening of a track, support and its name, springs.0 of a mesh."""
     law: Law
-    """Law of each of them; elongations count from the unloaded structure."""
+    """Law of each of them, from the unloaded structure on; where they are stiffer than at most places, it is, too."""
     direction: Direction = "z"
     """Direction in which they act."""
 

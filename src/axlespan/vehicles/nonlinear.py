@@ -76,9 +76,7 @@ def with_suspension_laws(vehicle: Vehicle, parts: Parts) -> Vehicle:
     for number, suspension in enumerate(parts.suspensions, 1):
         for law, gap in suspension.laws:
             for elongation in _elongations(suspension, parts):
-                vehicle = with_nonlinear_spring(
-                    vehicle, law, elongation, gap=gap, name=f"suspension{number}"
-                )
+                vehicle = with_nonlinear_spring(vehicle, law, elongation, gap=gap, name=f"suspension{number}")
     return vehicle
 
 

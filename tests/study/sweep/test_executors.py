@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from tests.study.sweep.conftest import STUDY, numbers_differ
 
+from axlespan.interaction.groundwork import Groundwork
 from axlespan.study.sweep import Study, executors, workshop
 from axlespan.study.sweep.executors import InProcess, Lost, Processes
 from axlespan.study.sweep.planning import tasks
@@ -109,3 +110,36 @@ def test_workers_of_another_version_refuse(study):
     recipe = replace(Recipe.of(study.spec), version="0.0.1")
     with pytest.raises(InputError, match=r"this worker has axlespan .*, and the run was started by 0.0.1"):
         workshop.Workshop(recipe)
+
+
+@pytest.mark.parametrize("basis", ["full", "reduced"])
+def test_a_structure_is_factored_once_for_all_its_tasks(study_file, monkeypatch, basis):
+    study = Study.load(study_file(STUDY.replace("alpha: -0.1", f"alpha: -0.1, basis: {basis}")))
+    laid = []
+    make = Groundwork.of.__func__
+    monkeypatch.setattr(
+        Groundwork, "of", classmethod(lambda cls, plans: laid.append(plans) or make(cls, plans))
+    )
+    workshop._WORKSHOPS.clear()
+    together = rows(InProcess().run(work(study, 3)))
+    assert len(laid) == 2  # structures; the tasks are eight
+    monkeypatch.undo()
+    apart = []
+    for task in work(study, 3):
+        workshop._WORKSHOPS.clear()
+        apart += InProcess().run([task])
+    assert numbers_differ(rows(apart), together) < EQUAL
+
+
+def test_factors_of_other_time_steps_and_methods_are_not_mixed(study_file):
+    text = STUDY.replace("step: 40", "step: 100").replace(
+        "vary:\n", "vary:\n  analysis.alpha: [-0.1, -0.2]\n  analysis.time_step: [4 ms, 3 ms]\n"
+    )
+    study = Study.load(study_file(text))
+    workshop._WORKSHOPS.clear()
+    kept = rows(InProcess().run(work(study, 128)))
+    for number in (0, 10, len(study.scenarios) - 1):
+        alone = study.scenario(number).run()
+        assert kept.loc[number, "sensor.midspan.displacement_min_m"] == pytest.approx(
+            alone.sensor_displacement.min(), rel=EQUAL
+        )

@@ -20,6 +20,7 @@ import numpy.typing as npt
 import axlespan
 from axlespan.errors import AxlespanError, InputError
 from axlespan.interaction.crossing import Crossing, Run
+from axlespan.interaction.groundwork import Groundwork
 from axlespan.interaction.plan import Plan
 from axlespan.interaction.result import Result
 from axlespan.interaction.simulate import run_plans
@@ -46,6 +47,8 @@ T = TypeVar("T")
 # Structures, trains and factors that a worker keeps.
 _STRUCTURES: Final = 8
 _TRAINS: Final = 64
+# Factors and reduced bases that a worker keeps, fewer where they are large [byte].
+_LAID, _LAID_BYTES = 2, 1e9
 
 # Steps of a scenario at which its energy is balanced: a few of each are many of a study.
 _ENERGY_SAMPLES: Final = 4
@@ -103,6 +106,7 @@ class Workshop:
         self.recipe = recipe
         self._structures, self._trains = _Kept(_STRUCTURES), _Kept(_TRAINS)
         self._bridges = _Kept(_STRUCTURES)  # facts for their verdicts
+        self._laid: list[Groundwork] = []  # what was used last is last
 
     # --- building ------------------------------------------------------------------------------
 
@@ -166,7 +170,7 @@ class Workshop:
             ready.setdefault(together(built.plan), []).append((number, built))
         results: dict[int, tuple[Result, Plan]] = {}
         for group in ready.values():
-            for number, result, built, seconds, reason in _computed(group):
+            for number, result, built, seconds, reason in self._computed(group):
                 rows[number] |= self._outcome(result, built, seconds, reason)
                 if result is not None and rows[number]["outcome"] == COMPLETED:
                     results[number] = (result, built.plan)
@@ -174,6 +178,36 @@ class Workshop:
         records = self._records(results)
         ordered = [rows[number] for number in task.ids]
         return Done(task.number, ordered, histories, records, time.process_time() - begun)
+
+    def _computed(
+        self, group: list[tuple[int, BuiltCase]]
+    ) -> list[tuple[int, Result | None, BuiltCase, float, str]]:
+        """Results of scenarios that go side by side; where all break off, each is tried alone."""
+        begun = time.perf_counter()
+        plans = [built.plan for _, built in group]
+        try:
+            results = run_plans(plans, groundwork=self._groundwork(plans))
+        except (AxlespanError, ArithmeticError, ValueError, MemoryError) as error:
+            if len(group) > 1:
+                return [one for item in group for one in self._computed([item])]
+            number, built = group[0]
+            return [(number, None, built, time.perf_counter() - begun, _words(error))]
+        share = (time.perf_counter() - begun) / len(group)
+        return [(n, result, built, share, "") for (n, built), result in zip(group, results, strict=True)]
+
+    def _groundwork(self, plans: Sequence[Plan]) -> Groundwork | None:
+        """The factor or basis of a structure, from an earlier task if there was one; none where it is refined."""
+        if plans[0].settings.basis_tolerance is not None:
+            return None
+        found = next((laid for laid in self._laid if laid.serves(plans)), None)
+        if found is None:
+            while self._laid and (
+                len(self._laid) >= _LAID or sum(laid.nbytes for laid in self._laid) > _LAID_BYTES
+            ):
+                self._laid.pop(0)
+            found = Groundwork.of(plans)
+        self._laid = [*(laid for laid in self._laid if laid is not found), found]
+        return found
 
     def _inputs(
         self, case: Case | None, values: Sequence[Any], labels: Sequence[str | None]
@@ -300,22 +334,6 @@ def _root(rising: Callable[[FloatArray], FloatArray]) -> float:
         first = max(1, int(np.argmax(rising(times) >= 0.0)))
         low, high = float(times[first - 1]), float(times[first])
     return high
-
-
-def _computed(
-    group: list[tuple[int, BuiltCase]],
-) -> list[tuple[int, Result | None, BuiltCase, float, str]]:
-    """Results of scenarios that go side by side; where all break off, each is tried alone."""
-    begun = time.perf_counter()
-    try:
-        results = run_plans([built.plan for _, built in group])
-    except (AxlespanError, ArithmeticError, ValueError, MemoryError) as error:
-        if len(group) > 1:
-            return [one for item in group for one in _computed([item])]
-        number, built = group[0]
-        return [(number, None, built, time.perf_counter() - begun, _words(error))]
-    share = (time.perf_counter() - begun) / len(group)
-    return [(n, result, built, share, "") for (n, built), result in zip(group, results, strict=True)]
 
 
 def _facts(built: BuiltCase, row: Mapping[str, Any]) -> dict[str, Any]:
