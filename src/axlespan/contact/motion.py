@@ -124,6 +124,8 @@ class SpeedHistory:
 
     def _from_first(self, time: FloatArray) -> FloatArray:
         """∫ of the speed from the first point of the table."""
+        if len(self.times) == 1 and self.beyond == 0.0:
+            return np.asarray(self.speeds[0] * (time - self.times[0]))
         steps = 0.5 * (self.speeds[1:] + self.speeds[:-1]) * np.diff(self.times)
         traveled = np.concatenate([[0.0], np.cumsum(steps)])
         i = np.clip(np.searchsorted(self.times, time, side="right") - 1, 0, len(self.times) - 1)

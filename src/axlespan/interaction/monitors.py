@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from axlespan.dynamics.integrator import Matrices, State
 from axlespan.interaction.plan import Plan
+from axlespan.interaction.reactions import on_segments
 from axlespan.running.path import PolynomialPath
 
 FloatArray = npt.NDArray[np.float64]
@@ -123,9 +124,9 @@ class BalanceMonitor:
         """Share (n_step, n_contact) of each wheel's force that the structure carries: 1, or less at its ends."""
         result = np.zeros(positions.shape)
         for wheels, path in self._lifted:
-            near = wheels[path.carries(positions[:, wheels]).any(axis=0)]
-            if len(near):
-                result[:, near] += path.weights(positions[:, near])[1][..., 0]
+            row, column = on_segments(path, positions[:, wheels])
+            wheel = wheels[column]
+            result[row, wheel] += path.weights(positions[row, wheel])[1][:, 0]
         return result
 
     @property
@@ -268,9 +269,7 @@ class EnergyMonitor:
                 vector[fleet.dofs] = values - fleet.weight[fleet.coupled]
                 on_wheels.append(vector)
             if self.inner_of_fleet is not None:
-                for vector, inner in zip(
-                    on_wheels, (self._inner_before, self.inner_of_fleet()), strict=True
-                ):
+                for vector, inner in zip(on_wheels, (self._inner_before, self.inner_of_fleet()), strict=True):
                     vector += 0.0 if inner is None else inner
             states, none = (vehicles_p, vehicles), np.zeros(fleet.matrices.size)
             own = _step_balance(plan, fleet.matrices, states, (on_wheels[0], on_wheels[1]), none)

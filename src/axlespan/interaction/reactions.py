@@ -39,7 +39,9 @@ class Reactions:
         self.paths = self._prescribed_paths()
         self._inertia = np.zeros(len(system.prescribed))
         self.restarted: Collection[int] = ()  # steps whose accelerations are those of their own time
-        self.released: Mapping[int, tuple[FloatArray, float]] = {}  # accelerations (n,) set anew after such a step
+        self.released: Mapping[
+            int, tuple[FloatArray, float]
+        ] = {}  # accelerations (n,) set anew after such a step
         # What nonlinear springs add in so many steps (n_step, n_P), in turn.
         self.inner: Callable[[int], FloatArray | None] | None = None
 
@@ -116,15 +118,28 @@ class Reactions:
 
     def _carried(self, positions: FloatArray, forces: FloatArray) -> FloatArray:
         """D_PX X: wheel loads that go straight into the supports."""
-        total = np.zeros((len(positions), self._inertia.size))
+        n_support = self._inertia.size
+        total = np.zeros((len(positions), n_support))
         for wheels, path in self.paths:
-            near = wheels[path.carries(positions[:, wheels]).any(axis=0)]
-            if not len(near) or not len(path.path_dofs):
+            row, column = on_segments(path, positions[:, wheels])
+            if not len(row):
                 continue
-            dofs, weights = path.weights(positions[:, near])
-            for support in path.path_dofs.tolist():
-                total[:, support] += ((dofs == support) * weights * forces[:, near, None]).sum(axis=(1, 2))
+            wheel = wheels[column]
+            dofs, weights = path.weights(positions[row, wheel])
+            place = row[:, None] * n_support + dofs
+            loads = weights * forces[row, wheel][:, None]
+            total += np.bincount(place.ravel(), loads.ravel(), total.size).reshape(total.shape)
         return total
+
+
+def on_segments(path: PolynomialPath, positions: FloatArray) -> tuple[IntArray, IntArray]:
+    """Rows and columns of the positions (n_step, n_wheel) at which a path has any weights."""
+    row, column = np.nonzero(path.carries(positions))
+    weighty = np.any(path.coefficients != 0.0, axis=(1, 2))
+    if len(row) and not weighty.all():
+        keep = weighty[path.locate(positions[row, column])[0]]
+        return row[keep], column[keep]
+    return row, column
 
 
 def _operand(matrix: sp.csr_array) -> FloatArray | sp.csr_array:

@@ -15,6 +15,7 @@ from axlespan.errors import AnalysisError, Outcome
 from axlespan.interaction.envelopes import EnvelopeMonitor
 from axlespan.interaction.fields import FieldWatcher
 from axlespan.interaction.force_noise import NoiseMonitor
+from axlespan.interaction.gathering import Gathering
 from axlespan.interaction.line_histories import LineHistories
 from axlespan.interaction.monitors import BalanceMonitor, CompatibilityMonitor, EnergyMonitor, TensionMonitor
 from axlespan.interaction.plan import Plan
@@ -34,10 +35,6 @@ IntArray = npt.NDArray[np.int64]
 _DIVERGED = 1e4
 
 _QUANTITIES = ("displacement", "velocity", "acceleration")
-
-# Steps, and bytes of their tapes, that are gathered before they are worked up: many at a time cost less each.
-_GATHERED, _GATHERED_BYTES = 1024, 750_000
-
 
 @dataclass(eq=False)
 class Histories:
@@ -91,7 +88,7 @@ class Recorder:
         more = [keeper.free_dofs for keeper in self._keepers]
         self.selected = np.unique(np.concatenate([own, *more]))
         self._inverse, *self._more = (np.searchsorted(self.selected, dofs) for dofs in (own, *more))
-        self._gathered: list[tuple[IntArray, FloatArray, LaneTape]] = []
+        self._gathering = Gathering()
         # Nonlinear couplings set things anew from step to step, which must be read in time.
         self._at_once = plan.is_nonlinear
         self.completed = 0  # time index of the last good step
@@ -118,22 +115,17 @@ class Recorder:
         if self._at_once:
             self._take(steps, positions, tape)
         else:
-            self._gathered.append((steps, positions, tape.copied()))
             self.completed = int(steps[-1])
-            if (
-                sum(len(some) for some, _, _ in self._gathered) >= _GATHERED
-                or sum(where.nbytes + own.nbytes for _, where, own in self._gathered) >= _GATHERED_BYTES
-            ):
+            if self._gathering.add(steps, positions, tape):
                 self._work_off()
         if self._progress is not None:
             self._progress(self.completed)
 
     def _work_off(self) -> None:
         """Work up what has been gathered."""
-        gathered, self._gathered = self._gathered, []
-        if gathered:
-            steps, positions, tapes = zip(*gathered, strict=True)
-            self._take(np.concatenate(steps), np.concatenate(positions), LaneTape.joined(tapes))
+        gathered = self._gathering.taken()
+        if gathered is not None:
+            self._take(*gathered)
 
     def broken_off(
         self, steps: IntArray, positions: FloatArray, tape: LaneTape, n_good: int, message: str | None

@@ -77,7 +77,7 @@ def _way(run: Run, end: float) -> tuple[float, float]:
 
 def _wrong(profile: Profile, low: float, high: float) -> Iterator[str]:
     """What is said of a profile between two positions [m]."""
-    places = [place for place in _ends(profile) if low < place < high]
+    places = sorted({place for place in _ends(profile) if low < place < high})
     for place in places:
         before, after = np.asarray(profile.value(np.array([place - _BESIDE, place + _BESIDE])))
         if abs(after - before) > _STEP:

@@ -1,0 +1,107 @@
+"""Numbers of crossings side by side, as vectors that compiled loops keep in the registers of the processor.
+
+A type and five operations for numba, of as many lanes as the tuple ``lanes`` is long, so that the same loop serves
+one crossing and eight. Only to be imported where numba is.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from llvmlite import ir
+from numba.core import types
+from numba.extending import intrinsic, models, register_model
+
+_DOUBLE = ir.DoubleType()
+_FUSED = ("contract",)  # a product and a sum may be one instruction
+
+
+class Vector(types.Type):  # type: ignore[misc]
+    """So many floats."""
+
+    def __init__(self, count: int) -> None:
+        self.count = count
+        super().__init__(name=f"Vector({count})")
+
+
+class VectorModel(models.PrimitiveModel):  # type: ignore[misc]
+    """A vector of the processor."""
+
+    def __init__(self, manager: Any, kind: Vector) -> None:
+        super().__init__(manager, kind, ir.VectorType(_DOUBLE, kind.count))
+
+
+register_model(Vector)(VectorModel)
+
+
+def _place(context: Any, builder: Any, kind: Any, array: Any, at: Any, count: int) -> Any:
+    """Pointer to some entries of an array (n,) in one piece."""
+    data = context.make_array(kind)(context, builder, array).data
+    return builder.bitcast(builder.gep(data, [at]), ir.VectorType(_DOUBLE, count).as_pointer())
+
+
+def _repeated(builder: Any, value: Any, count: int) -> Any:
+    one = builder.insert_element(
+        ir.Constant(ir.VectorType(_DOUBLE, count), ir.Undefined), value, ir.Constant(ir.IntType(32), 0)
+    )
+    return builder.shuffle_vector(
+        one, one, ir.Constant(ir.VectorType(ir.IntType(32), count), [0] * count)
+    )
+
+
+def _read(context_of_types: Any, lanes: Any, array: Any, at: Any) -> Any:
+    """``array[at : at + len(lanes)]``."""
+
+    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        where = _place(context, builder, signature.args[1], arguments[1], arguments[2], lanes.count)
+        return builder.load(where, align=8)
+
+    return Vector(lanes.count)(lanes, array, types.uint64), code
+
+
+def _put(context_of_types: Any, array: Any, at: Any, t: Any) -> Any:
+    """``array[at : at + len(t)] = t``."""
+
+    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        builder.store(
+            arguments[2], _place(context, builder, signature.args[0], arguments[0], arguments[1], t.count), align=8
+        )
+        return context.get_dummy_value()
+
+    return types.void(array, types.uint64, t), code
+
+
+def _plus(context_of_types: Any, t: Any, factor: Any, s: Any) -> Any:
+    """``t + factor * s``."""
+
+    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        product = builder.fmul(_repeated(builder, arguments[1], t.count), arguments[2], flags=_FUSED)
+        return builder.fadd(arguments[0], product, flags=_FUSED)
+
+    return t(t, types.float64, s), code
+
+
+def _scaled(context_of_types: Any, factor: Any, t: Any) -> Any:
+    """``factor * t``."""
+
+    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.fmul(_repeated(builder, arguments[0], t.count), arguments[1], flags=_FUSED)
+
+    return t(types.float64, t), code
+
+
+def _size(context_of_types: Any, t: Any) -> Any:
+    """Sum of the magnitudes."""
+
+    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        magnitude = builder.module.declare_intrinsic("llvm.fabs", [_DOUBLE])
+        total = ir.Constant(_DOUBLE, 0.0)
+        for lane in range(t.count):
+            entry = builder.extract_element(arguments[0], ir.Constant(ir.IntType(32), lane))
+            total = builder.fadd(total, builder.call(magnitude, [entry]))
+        return total
+
+    return types.float64(t), code
+
+
+read, put, plus, scaled, size = (intrinsic(made) for made in (_read, _put, _plus, _scaled, _size))
