@@ -15,7 +15,6 @@ from axlespan.linalg.compiled import numba_is_there
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
-Entries = tuple[npt.NDArray[np.uint32], FloatArray]
 Csr = tuple[npt.NDArray[np.uint32], npt.NDArray[np.uint32], FloatArray]
 
 
@@ -26,8 +25,8 @@ class BandedBody:
     width: int  # that is compiled for the half-bandwidth
     rank: IntArray  # (n,) place of each d.o.f. in the order
     rows: IntArray  # (n,) the d.o.f. in that order
-    K: Entries
-    C: Entries
+    K: Csr
+    C: Csr
     damped: bool
     lower: FloatArray  # (n + width, width + 1): 1 / D, and entry (i, i - d) of L at [i, d]
     ahead: int  # half-bandwidth of K and C
@@ -44,7 +43,7 @@ class BandedBody:
         rank[rows] = np.arange(len(rows))
         ahead = max(_half_bandwidth(matrix) for matrix in (K, C))
         damped = m.C is not None
-        return cls(width, rank, rows, _padded(K), _padded(C), damped, factor.unit_rows(width), ahead)
+        return cls(width, rank, rows, csr_parts(K), csr_parts(C), damped, factor.unit_rows(width), ahead)
 
 
 def _in_order(matrix: sp.csr_array | None, rows: IntArray) -> sp.csr_array:
@@ -53,17 +52,6 @@ def _in_order(matrix: sp.csr_array | None, rows: IntArray) -> sp.csr_array:
     result = sp.csr_array(matrix[rows][:, rows])
     result.sort_indices()
     return result
-
-
-def _padded(matrix: sp.csr_array) -> Entries:
-    """Columns and entries row after row, filled up with zeros so that all have as many: loops are foreseen then."""
-    n, counts = matrix.shape[0], np.diff(matrix.indptr)
-    longest = int(counts.max(initial=0))
-    there = np.arange(longest) < counts[:, None]
-    columns = np.repeat(np.arange(n), longest).reshape(n, longest).astype(np.uint32)
-    entries = np.zeros((n, longest))
-    columns[there], entries[there] = matrix.indices, matrix.data
-    return columns.ravel(), entries.ravel()
 
 
 def _half_bandwidth(matrix: sp.csr_array) -> int:

@@ -169,10 +169,10 @@ def _fleet_arrays(convoy: Convoy) -> tuple[Any, ...]:
 
 def _compact(
     sums: Sequence[tuple[FloatArray, int]], rank: IntArray
-) -> tuple[IntArray, IntArray, IntArray, FloatArray]:
+) -> tuple[IntArray, IntArray, npt.NDArray[np.uint64], FloatArray]:
     """Weighted sums over the structure by their nonzero weights: ends, quantities, rows, weights."""
     parts = [(np.flatnonzero(vector), vector, which) for vector, which in sums]
     ends = np.cumsum([0, *(len(at) for at, _, _ in parts)]).astype(np.int64)
     of = np.array([which for _, _, which in parts], dtype=np.int64)
     at = np.concatenate([np.empty(0, np.int64), *(rank[at] for at, _, _ in parts)])
-    return ends, of, at, np.concatenate([np.empty(0), *(vector[at] for at, vector, _ in parts)])
+    return ends, of, at.astype(np.uint64), np.concatenate([np.empty(0), *(vector[at] for at, vector, _ in parts)])

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from axlespan.interaction.lane_vectors import plus, put, read, scaled, size
+from axlespan.interaction.lane_vectors import plus, plus_size, put, read, scaled, total
 from axlespan.linalg.compiled import as_compiled
 
 # A response to contact that is so much smaller than its largest value is none; asked every so many rows.
@@ -36,10 +36,9 @@ def forward(
     u, v, a = state
     mean_u, mean_v = ring
     mask = np.uint64(mean_u.shape[0] // len(lanes) - 1)
-    columns, entries = K
-    c_columns, c_entries = C
-    n = np.uint64(u.shape[0]) // L
-    in_row, c_in_row = np.uint64(len(columns)) // n, np.uint64(len(c_columns)) // n
+    starts, columns, entries = K
+    c_starts, c_columns, c_entries = C
+    n = np.uint64(starts.shape[0] - 1)
     dt, late_u, late_v, u_from_a, v_from_a = late
     u1, u2, u3, v2, v3 = p[2, 0], p[2, 1], p[2, 2], p[3, 1], p[3, 2]
     low, high = np.uint64(reach[0]), np.uint64(reach[1])
@@ -64,10 +63,10 @@ def forward(
         j = i - np.uint64(ahead)
         k = j + w
         t = read(lanes, extra, j * L) if forced else none
-        for q in range(j * in_row, (j + one) * in_row):
+        for q in range(starts[j], starts[j + one]):
             t = plus(t, -entries[q], read(lanes, mean_u, (columns[q] & mask) * L))
         if damped:
-            for q in range(j * c_in_row, (j + one) * c_in_row):
+            for q in range(c_starts[j], c_starts[j + one]):
                 t = plus(t, -c_entries[q], read(lanes, mean_v, (c_columns[q] & mask) * L))
         for e in range(len(width) - 1):
             d = w - np.uint64(e)
@@ -79,12 +78,12 @@ def forward(
 @as_compiled
 def eliminate(lanes: Any, width: Any, lower: Any, x: Any, begin: Any, must: Any) -> Any:
     """L y = b in place from row ``begin`` on, at least to row ``must``; the row behind the last that is not nothing."""
-    L, w = np.uint64(len(lanes)), np.uint64(len(width))
+    L, w, zero = np.uint64(len(lanes)), np.uint64(len(width)), np.uint64(0)
     n = np.uint64(lower.shape[0]) - w
     i, largest = np.uint64(begin), 0.0
     while i < n:
         stop = min(i + np.uint64(_ROWS), n)
-        here = 0.0
+        sizes = scaled(0.0, read(lanes, x, zero))
         for j in range(i, stop):
             k = j + w
             t = read(lanes, x, k * L)
@@ -92,7 +91,8 @@ def eliminate(lanes: Any, width: Any, lower: Any, x: Any, begin: Any, must: Any)
                 d = w - np.uint64(e)
                 t = plus(t, -lower[j, d], read(lanes, x, (k - d) * L))
             put(x, k * L, t)
-            here = max(here, size(t))
+            sizes = plus_size(sizes, t)
+        here = total(sizes)
         i, largest = stop, max(largest, here)
         if i > must and here <= _NOTHING * largest:
             break
@@ -106,7 +106,7 @@ def backward(lanes: Any, width: Any, lower: Any, x: Any, end: Any, must: Any) ->
     i, largest, last = np.uint64(end), 0.0, read(lanes, x, (np.uint64(end) + w) * L)
     while i > zero:
         stop = i - min(i, np.uint64(_ROWS))
-        here = 0.0
+        sizes = scaled(0.0, read(lanes, x, zero))
         for r in range(i - stop):
             j = i - one - np.uint64(r)
             k = j + w
@@ -116,7 +116,8 @@ def backward(lanes: Any, width: Any, lower: Any, x: Any, end: Any, must: Any) ->
                 t = plus(t, -lower[j + d, d], read(lanes, x, (k + d) * L))
             last = plus(t, -lower[j + one, one], last)
             put(x, k * L, last)
-            here = max(here, size(last))
+            sizes = plus_size(sizes, last)
+        here = total(sizes)
         i, largest = stop, max(largest, here)
         if i < must and here <= _NOTHING * largest:
             break
@@ -320,14 +321,20 @@ def _write(lanes: Any, state: Any, tape: Any, k: int) -> None:
         for i in range(n):
             where = np.uint64(rows[i]) * L + np.uint64(c)
             near[k, 0, into + i], near[k, 1, into + i], near[k, 2, into + i] = u[where], v[where], a[where]
+    sum_of_four = np.zeros(len(lanes))
     for s in range(len(of)):
         source = u if of[s] == 0 else (v if of[s] == 1 else a)
+        t0 = scaled(0.0, read(lanes, u, np.uint64(0)))  # four sums that do not wait for one another
+        t1, t2, t3, more = t0, t0, t0, ends[s]
+        while more + 4 <= ends[s + 1]:
+            t0 = plus(t0, values[more], read(lanes, source, at[more] * L))
+            t1 = plus(t1, values[more + 1], read(lanes, source, at[more + 1] * L))
+            t2 = plus(t2, values[more + 2], read(lanes, source, at[more + 2] * L))
+            t3 = plus(t3, values[more + 3], read(lanes, source, at[more + 3] * L))
+            more += 4
+        while more < ends[s + 1]:
+            t0 = plus(t0, values[more], read(lanes, source, at[more] * L))
+            more += 1
+        put(sum_of_four, np.uint64(0), plus(plus(t0, 1.0, t1), 1.0, plus(t2, 1.0, t3)))
         for c in range(used):
-            one, two, more = 0.0, 0.0, ends[s]
-            while more + 1 < ends[s + 1]:
-                one += values[more] * source[np.uint64(at[more]) * L + np.uint64(c)]
-                two += values[more + 1] * source[np.uint64(at[more + 1]) * L + np.uint64(c)]
-                more += 2
-            if more < ends[s + 1]:
-                one += values[more] * source[np.uint64(at[more]) * L + np.uint64(c)]
-            sums[k, s, lane + c] = one + two
+            sums[k, s, lane + c] = sum_of_four[c]

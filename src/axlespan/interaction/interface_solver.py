@@ -23,7 +23,7 @@ from axlespan.errors import AxlespanError
 FloatArray = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
-#: Forces (n,) and their derivatives (n,) from coordinates (n,); rows of constraints are not read.
+#: Forces (n,) and their derivatives (n,), or (n, n) where rows depend on each other, from coordinates (n,); rows of constraints are not read.
 Evaluate = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 
 # A Newton step below this share of the scale ends the iteration: the error is then about its square.
@@ -121,7 +121,8 @@ class _Newton:
             residual, jacobian = forces.copy(), np.zeros_like(self.S)
         else:
             given, slope = face.evaluate(d)
-            residual, jacobian = forces - given, slope[..., None] * self.S
+            residual = forces - given
+            jacobian = slope @ self.S if slope.ndim > forces.ndim else slope[..., None] * self.S
         jacobian[..., self._at, self._at] += 1.0
         if not self._any:
             return residual, jacobian, None

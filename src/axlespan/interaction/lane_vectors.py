@@ -6,10 +6,11 @@ one crossing and eight. Only to be imported where numba is.
 
 from __future__ import annotations
 
+from functools import reduce
 from typing import Any
 
 from llvmlite import ir
-from numba.core import types
+from numba.core import cgutils, types
 from numba.extending import intrinsic, models, register_model
 
 _DOUBLE = ir.DoubleType()
@@ -90,18 +91,31 @@ def _scaled(context_of_types: Any, factor: Any, t: Any) -> Any:
     return t(types.float64, t), code
 
 
-def _size(context_of_types: Any, t: Any) -> Any:
-    """Sum of the magnitudes."""
+def _plus_size(context_of_types: Any, t: Any, s: Any) -> Any:
+    """``t + abs(s)``."""
 
     def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        magnitude = builder.module.declare_intrinsic("llvm.fabs", [_DOUBLE])
-        total = ir.Constant(_DOUBLE, 0.0)
-        for lane in range(t.count):
-            entry = builder.extract_element(arguments[0], ir.Constant(ir.IntType(32), lane))
-            total = builder.fadd(total, builder.call(magnitude, [entry]))
-        return total
+        kind = ir.VectorType(_DOUBLE, t.count)
+        magnitude = cgutils.get_or_insert_function(
+            builder.module, ir.FunctionType(kind, [kind]), f"llvm.fabs.v{t.count}f64"
+        )
+        return builder.fadd(arguments[0], builder.call(magnitude, [arguments[1]]))
+
+    return t(t, s), code
+
+
+def _total(context_of_types: Any, t: Any) -> Any:
+    """``t.sum()``."""
+
+    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        entries = [
+            builder.extract_element(arguments[0], ir.Constant(ir.IntType(32), lane)) for lane in range(t.count)
+        ]
+        return reduce(builder.fadd, entries)
 
     return types.float64(t), code
 
 
-read, put, plus, scaled, size = (intrinsic(made) for made in (_read, _put, _plus, _scaled, _size))
+read, put, plus, scaled, plus_size, total = (
+    intrinsic(made) for made in (_read, _put, _plus, _scaled, _plus_size, _total)
+)

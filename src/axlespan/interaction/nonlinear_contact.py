@@ -17,6 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy.linalg import block_diag
 
 from axlespan.contact.laws_of_wheels import WheelLaws
 from axlespan.errors import AnalysisError
@@ -231,6 +232,8 @@ class NonlinearCoupling:
             if field is None or not n_spring:
                 return force, slope
             inner, inner_slope = field.evaluate(d[w:])
+            if inner_slope.ndim == 2:
+                return np.concatenate([force, inner]), block_diag(np.diag(slope), inner_slope)
             return np.concatenate([force, inner]), np.concatenate([slope, inner_slope])
 
         interface = Interface(rigid, unilateral, evaluate if compliant else None, self.scale)

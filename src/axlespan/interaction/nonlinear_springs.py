@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -22,6 +23,7 @@ from axlespan.errors import InputError
 from axlespan.interaction.plan import Plan
 from axlespan.linalg.factor import Factor
 from axlespan.model.motions import Constant
+from axlespan.model.nonlinear_elements import ElementLaw
 from axlespan.model.system import SpringRows, System
 
 FloatArray = npt.NDArray[np.float64]
@@ -41,7 +43,7 @@ class Springs:
     rows: sp.csr_array  # (n_spring, n_free)
     ground: sp.csr_array  # (n_spring, n_prescribed)
     base: FloatArray  # e_0 (n_spring,) [m], gaps included
-    state: list[FloatArray]  # of each group (n, n_state)
+    state: list[Any]  # of each group (n, n_state); of an element, what it remembers
 
     @classmethod
     def of(cls, system: System) -> Springs:
@@ -59,7 +61,7 @@ class Springs:
         if groups and np.any(abs(ground).sum(axis=0)[np.array(moves, dtype=bool)] > 0.0):
             raise InputError("must not stand on supports that move", field="nonlinear springs")
         base = np.concatenate([group.gap for group in groups]) if groups else np.zeros(0)
-        state = [np.zeros((len(group.gap), group.law.n_state)) for group in groups]
+        state = [_unused(group) for group in groups]
         return cls(groups, sp.csr_array(rows), sp.csr_array(ground), base, state)
 
     @classmethod
@@ -83,7 +85,7 @@ class Springs:
             begin += n_own
         rows = sp.csr_array(sp.vstack([sp.csr_array((0, size)), *(group.rows for group in groups)]))
         base = np.concatenate([np.zeros(0), *(group.gap for group in groups)])
-        state = [np.zeros((len(group.gap), group.law.n_state)) for group in groups]
+        state = [_unused(group) for group in groups]
         return cls(tuple(groups), rows, sp.csr_array((rows.shape[0], 0)), base, state)
 
     def with_fleet(self, others: Springs) -> Springs:
@@ -160,9 +162,30 @@ class Springs:
         return k - self.stiffness, c - self.damping
 
     def static_deviation(self, e: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Q and its derivative at rest."""
+        """Q and its derivative at rest, (n,) or (n, n) where there are elements."""
         still = np.zeros(self.n)
-        return self.deviation(e, still), self.tangent(e, still)[0]
+        k, _ = self.tangent(e, still)
+        return self.deviation(e, still), self.with_blocks(k, e, still, 0.0)
+
+    @cached_property
+    def coupled(self) -> IntArray:
+        """Springs that are d.o.f. of elements: what one of them does depends on the others."""
+        pairs = zip(self.groups, self.slices, strict=True)
+        parts = [np.arange(at.start, at.stop) for group, at in pairs if isinstance(group.law, ElementLaw)]
+        return np.concatenate([np.zeros(0, dtype=np.int64), *parts]).astype(np.int64)
+
+    def with_blocks(
+        self, diagonal: FloatArray, e: FloatArray, rate: FloatArray, per_rate: float
+    ) -> FloatArray:
+        """Slopes (n,) as they are, or as a matrix (n, n) with the tangents of elements, where there are any."""
+        if not len(self.coupled):
+            return diagonal
+        result, total = np.diag(diagonal), self.base + e
+        for group, state, at in zip(self.groups, self.state, self.slices, strict=True):
+            if isinstance(group.law, ElementLaw):
+                k, c = group.law.blocks(total[at], rate[at], state)
+                result[at, at] = k + per_rate * c
+        return result
 
     def energy(self, e: FloatArray) -> FloatArray:
         """Energy (n,) [J] of the springs."""
@@ -216,7 +239,7 @@ class Springs:
         for _ in range(_LIMIT):
             if float(np.abs(rest).max()) <= _TOLERANCE * scale:
                 return e
-            jacobian = self.tangent(e, still)[0][:, None] * compliance
+            jacobian = slope_times(self.static_deviation(e)[1], compliance)
             jacobian[np.diag_indices_from(jacobian)] += 1.0
             step = np.linalg.solve(jacobian, rest)
             share = 1.0
@@ -236,3 +259,15 @@ class Springs:
             value=f"spring {worst}",
             fix="Check gaps and laws: is the structure held when springs part?",
         )
+
+
+def slope_times(slope: FloatArray, matrix: FloatArray) -> FloatArray:
+    """The product of slopes, (n,) of a diagonal or (n, n), and a matrix (n, m)."""
+    return np.asarray(slope[:, None] * matrix if slope.ndim == 1 else slope @ matrix)
+
+
+def _unused(group: SpringRows) -> Any:
+    """What springs of a group remember before the first step."""
+    if isinstance(group.law, ElementLaw):
+        return None
+    return np.zeros((len(group.gap), group.law.n_state))

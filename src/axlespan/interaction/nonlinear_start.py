@@ -22,7 +22,7 @@ from axlespan.contact.laws_of_wheels import WheelLaws
 from axlespan.dynamics.integrator import State
 from axlespan.errors import AnalysisError
 from axlespan.interaction.nonlinear_balance import Balance
-from axlespan.interaction.nonlinear_springs import Springs
+from axlespan.interaction.nonlinear_springs import Springs, slope_times
 from axlespan.interaction.plan import Plan
 from axlespan.interaction.start import (
     ContactRows,
@@ -218,7 +218,7 @@ class _Statics:
         if len(q):
             given, tangent = self.springs.static_deviation(elongation)
             residual[w:] = q - given
-            jacobian[w:] = dp[w:] - tangent[:, None] * dd[w:]
+            jacobian[w:] = dp[w:] - slope_times(tangent, dd[w:])
         return residual, jacobian
 
     def solve(self) -> tuple[FloatArray, FloatArray]:

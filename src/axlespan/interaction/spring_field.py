@@ -49,7 +49,7 @@ class SpringField:
         self.q = np.concatenate([deviation, np.zeros(fleet.n)])
         self.e, self.rate = np.zeros(self.n), np.zeros(self.n)
         self.e_free, self.rate_free = np.zeros(self.n), np.zeros(self.n)
-        self.active = np.flatnonzero(self.q)
+        self.active = self._active()
         self.largest = len(self.active)  # unknowns of a step, so far
         self.history = [self.q]  # of the start and each step, where springs stand on supports
         self._columns: FloatArray | None = None
@@ -145,13 +145,18 @@ class SpringField:
         return system, np.concatenate([gap, self.e_free[a]]), self.q[a]
 
     def evaluate(self, e: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Deviations of the active springs at their elongations, and their derivatives."""
+        """Deviations of the active springs at their elongations, and their derivatives: (n,), or (n, n) with elements."""
         a = self.active
         whole = self.e_free.copy()
         whole[a] = e
         rate = self.rate_free + self._rate_from_e * (whole - self.e_free)
         k, c = self.springs.tangent(whole, rate)
-        return self.springs.deviation(whole, rate)[a], (k + self._rate_from_e * c)[a]
+        slope = self.springs.with_blocks(k + self._rate_from_e * c, whole, rate, self._rate_from_e)
+        return self.springs.deviation(whole, rate)[a], slope[a] if slope.ndim == 1 else slope[np.ix_(a, a)]
+
+    def _active(self) -> IntArray:
+        """Springs that deviate, and all that are d.o.f. of elements."""
+        return np.union1d(np.flatnonzero(self.q), self.springs.coupled).astype(np.int64)
 
     def settle(self, forces: FloatArray, deviation: FloatArray) -> bool:
         """Take a solution; false where springs deviate that were left out: they are active from now on."""
@@ -184,7 +189,7 @@ class SpringField:
         """Give the structure the loads of the wheels (n_held,) and the springs, and complete the step."""
         if self.n:
             self.springs.advance(self.e, self.rate)
-            self.active = np.flatnonzero(self.q)
+            self.active = self._active()
             if self._ground.nnz:
                 self.history.append(self.q)
         inner = self.q[: self.n_own]
