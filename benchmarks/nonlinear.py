@@ -7,7 +7,7 @@ from axlespan.bridges.unilateral import with_unilateral_springs
 from benchmarks import track
 from benchmarks.timing import Row, in_turns
 
-_APPROACH = 267  # bays, so that 601 sleepers are there
+_APPROACH = 160.0  # [m], so that 601 sleepers are there
 _STEPS, _SHORT = 3000, 300
 
 
@@ -15,10 +15,9 @@ def run(runs: int, quick: bool = False) -> list[Row]:
     """Linear ballast, unilateral ballast, and four hanging sleepers; then laws of contact on the linear one."""
     linear = track.bridge(approach=_APPROACH)
     unilateral = with_unilateral_springs(linear, "ballast")
-    middle = (_APPROACH + 20) * track.BAY
-    hanging = [(middle + i * track.BAY, 1e-3) for i in range(4)]
+    hanging = [(12.0 + 0.6 * i, 1e-3) for i in range(4)]
     loose = with_unilateral_springs(linear, "ballast", hanging=hanging)
-    train = track.train() if hasattr(track, "train") else asp.Train.of(track.car(), 4, 24.775)
+    train = track.train(4)
 
     steps = _SHORT if quick else _STEPS
 

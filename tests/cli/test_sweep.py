@@ -1,9 +1,12 @@
 """``axlespan sweep``, and ``axlespan check`` of a study."""
 
 import json
+from importlib import resources
 
+import jsonschema
 import pandas as pd
 import pytest
+from ruamel.yaml import YAML
 
 STUDY = """\
 title: Two speeds
@@ -102,6 +105,15 @@ def test_a_million_by_mistake(axlespan, path, tmp_path):
     assert "Add --yes if that is meant; axlespan check" in answer.err
 
 
+def test_products_that_no_table_holds(axlespan, path, tmp_path):
+    many = "{from: 20, to: 30, count: 10000}"
+    vary = f"{{crossing.speed: {many}, structure.length: {many}, structure.mass_per_length: {many}}}"
+    path.write_text(STUDY.replace("{crossing.speed: [100 km/h, 150 km/h]}", vary))
+    answer = axlespan("sweep", path, "-o", tmp_path / "out", "--yes")
+    assert answer.code == 2 and not (tmp_path / "out").exists()
+    assert f"{path}:9:1: vary: makes 1e+12 scenarios (10000 × 10000 × 10000); at most 1e+07" in answer.err
+
+
 def test_a_scheduler_that_is_not_there(axlespan, path, tmp_path, monkeypatch):
     pytest.importorskip("distributed")
     monkeypatch.setattr("axlespan.study.sweep.on_dask.PATIENCE", 0.5)
@@ -127,6 +139,65 @@ def test_a_disk_that_fills_up(axlespan, path, tmp_path, monkeypatch):
     monkeypatch.undo()
     assert axlespan("sweep", path, "-o", tmp_path / "out", "--resume", "--no-figures").code == 0
     assert len(pd.read_parquet(tmp_path / "out" / "table")) == 2
+
+
+@pytest.fixture(scope="module")
+def study_schema(axlespan):
+    answer = axlespan("schema", "--study")
+    assert (answer.code, answer.err) == (0, "")
+    content = json.loads(answer.out)
+    jsonschema.Draft202012Validator.check_schema(content)
+    return jsonschema.Draft202012Validator(content)
+
+
+def read(text):
+    return YAML(typ="safe").load(text)
+
+
+@pytest.mark.parametrize("name", ["study-hslm", "study-random", "study-monitoring"])
+def test_the_schema_accepts_the_examples(study_schema, name):
+    study_schema.validate(read((resources.files("axlespan") / "examples" / f"{name}.yaml").read_text()))
+
+
+@pytest.mark.parametrize(
+    ("vary", "rest"),
+    [
+        ("{crossing.speed: {from: 20 m/s, to: 30 m/s, count: 3}}", ""),
+        ("{crossing.speed: {factor: [0.9, 110 %]}, crossing.irregularity.seed: {seeds: 3}}", ""),
+        (
+            "{train: {mix: {ice3: 2}, trains: 2, gap: {distribution: uniform, from: 1 m, to: 9 m}}}",
+            "zip: [[a, b]]",
+        ),
+        (
+            "{train: hslm-a, structure.damage: [[], [{from: 1 m, to: 2 m, stiffness: 0.5}]]}",
+            "passage: {after: 0}",
+        ),
+    ],
+)
+def test_the_schema_accepts_all_forms(study_schema, vary, rest):
+    study_schema.validate(read(f"base: case.yaml\nvary: {vary}\n{rest}\n"))
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("vary: {a: [1]}", "'base' is a required property"),
+        ("base: case.yaml\nvary: {}", "should be non-empty"),
+        ("base: case.yaml\nvary: {a: []}", "is not valid under any of the given schemas"),
+        ("base: case.yaml\nvary: {a: {from: 1, to: 2}}", "is not valid under any of the given schemas"),
+        ("base: case.yaml\nvary: {a: {from: 1, to: 2, step: 1, count: 2}}", "is not valid under any"),
+        ("base: case.yaml\nvary: {a: 3}", "is not valid under any of the given schemas"),
+        ("base: case.yaml\nvary: {a: [1]}\nsampling: {method: halton, count: 3}", "'halton' is not one of"),
+        (
+            "base: case.yaml\nvary: {a: [1]}\nrecords: {noise: {std: 1}}",
+            "'sampling_rate' is a required property",
+        ),
+        ("base: case.yaml\nvari: {a: [1]}\nvary: {a: [1]}", "'vari' was unexpected"),
+    ],
+)
+def test_the_schema_refuses_what_is_wrong(study_schema, text, says):
+    with pytest.raises(jsonschema.ValidationError, match=says):
+        study_schema.validate(read(text))
 
 
 def test_help_names_the_options(axlespan):

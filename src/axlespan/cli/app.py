@@ -179,11 +179,13 @@ def library(
 
 
 @app.command()
-def schema() -> None:
-    """Print the JSON Schema of the case file."""
+def schema(
+    study: Annotated[bool, typer.Option("--study", help="That of the study file.")] = False,
+) -> None:
+    """Print the JSON Schema of the case file, or of the study file."""
     from axlespan.cli.schema import print_schema
 
-    raise typer.Exit(print_schema())
+    raise typer.Exit(print_schema(study))
 
 
 @app.command()

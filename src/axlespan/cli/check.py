@@ -23,7 +23,6 @@ from axlespan.study.size import Size, size_text
 from axlespan.study.sweep.spec import is_study_file
 from axlespan.vehicles import Vehicle
 
-
 # Wheel loads that are written one by one.
 _MANY = 8
 

@@ -6,13 +6,13 @@ from pathlib import Path
 
 from axlespan.cli.messages import DONE, FAILED, refuse, say, warn
 from axlespan.errors import InputError
-from axlespan.report import write_report
+from axlespan.report.page import write_told
 
 
 def make_report(folder: Path, page: Path | None) -> int:
     """Write the page of a stored result; the exit code."""
     try:
-        written = write_report(folder, page)
+        written, notices = write_told(folder, page)
     except InputError as error:
         return refuse(error)
     except OSError as error:
@@ -21,6 +21,8 @@ def make_report(folder: Path, page: Path | None) -> int:
     except MemoryError:
         warn(f"{folder}: there is not enough memory for the page; keep fewer times with every, under output")
         return FAILED
+    for notice in notices:
+        warn(f"{folder}: {notice}")
     say(f"Written to {written} ({_size(written.stat().st_size)}); open it in a browser")
     return DONE
 

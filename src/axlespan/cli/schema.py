@@ -1,4 +1,4 @@
-"""``axlespan schema``: the JSON Schema of the case file."""
+"""``axlespan schema``: the JSON Schema of the case file, or of the study file."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ import json
 
 from axlespan.cli.messages import DONE, say
 from axlespan.study.case import schema
+from axlespan.study.sweep.schema import study_schema
 
 
-def print_schema() -> int:
+def print_schema(study: bool = False) -> int:
     """Print it; the exit code."""
-    say(json.dumps(schema(), indent=2))
+    say(json.dumps(study_schema() if study else schema(), indent=2))
     return DONE

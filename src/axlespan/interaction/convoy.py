@@ -89,7 +89,9 @@ class Convoy:
     def stretch(self, *, systems: bool = True) -> Stretch:
         """The next steps: as many as every lane still has, and as memory allows."""
         size = sum(plan.rows.n_contact**2 for plan in self.plans)
-        seconds = _PER_BYTE * self.prepared.integrator.factor.nbytes * len(self.lanes)
+        # Side by side, a crossing costs about a third.
+        alone = _PER_BYTE * self.prepared.integrator.factor.nbytes
+        seconds = alone * (2 + len(self.lanes)) / 3
         often = int(_NEWS / max(seconds, _NEWS / _STRETCH))
         n_step = max(16, min(_STRETCH, _ENTRIES // max(size, 1), often))
         n_step = min(n_step, *(lane.left for lane in self.lanes))
@@ -165,6 +167,10 @@ class Leap(Protocol):
 
     def go(self, stretch: Stretch, first: int, stop: int, external: FloatArray | None) -> None:
         """Make steps ``first`` to ``stop`` of a stretch under weighted factors (n_step, n_term), and write the tape."""
+        ...
+
+    def show(self, stretch: Stretch, k: int, lanes: Sequence[int]) -> None:
+        """Bring the convoy's bodies to step ``k``, the last one made; of the structure, the states of some lanes."""
         ...
 
 
@@ -250,9 +256,12 @@ def _make(
             except AnalysisError as error:
                 message = str(error)
                 break
-            for i, watchers in enumerate(watching):
-                if watchers.looks_at(stretch.first + k):
-                    watchers.look(stretch.first + k, *convoy.moment(i))
+            who = [i for i, watchers in enumerate(watching) if watchers.looks_at(stretch.first + k)]
+            if leap is not None:
+                last = k == stretch.n_step - 1
+                leap.show(stretch, k, range(len(watching)) if last else who)
+            for i in who:
+                watching[i].look(stretch.first + k, *convoy.moment(i))
     bad = {i: convoy.lanes[i].recorder.first_bad(convoy.tape_of(i)) for i in range(len(convoy.lanes))}
     found = {i: (k, None) for i, k in bad.items() if k is not None}
     if found:

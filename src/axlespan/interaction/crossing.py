@@ -10,7 +10,7 @@ from typing import ClassVar
 from axlespan.card import Card, Shown
 from axlespan.contact.motion import Course, SpeedHistory
 from axlespan.errors import InputError
-from axlespan.irregularity import Profile, Smooth
+from axlespan.irregularity import FiniteContact, Profile, Smooth, Sum
 from axlespan.model.dofs import nearest
 from axlespan.running.structure import MAIN_LINE, Structure
 from axlespan.vehicles.train import Placement, Train
@@ -97,7 +97,8 @@ class Run:
     train: Train
     course: Course
     lines: tuple[str, ...]  # (n_contact,) names of running lines
-    profiles: tuple[Profile, ...]  # (n_contact,)
+    surfaces: tuple[Profile, ...]  # (n_contact,) of the lines, as the wheels feel them over their patches
+    profiles: tuple[Profile, ...]  # (n_contact,) those and what the wheels have of their own
     first: int  # vehicles of the trains before
 
 
@@ -175,12 +176,13 @@ class Crossing(Shown, Movement):
         if start is None:
             start = 0.0 if direction > 0 else self.structure.line(lines[0]).stop
         irregularity = moving.irregularity if moving.irregularity is not None else self.irregularity
-        profiles = self._profiles(irregularity, lines)
+        surfaces, profiles = _under_wheels(train, lines, self._profiles(irregularity, lines))
         return Run(
             train,
             Course(moving.motion, float(start), direction, moving.delay),
             lines,
-            tuple(profiles[name] for name in lines),
+            surfaces,
+            profiles,
             first,
         )
 
@@ -239,6 +241,28 @@ class Crossing(Shown, Movement):
             else f"asp.simulate(crossing, time_step=1e-3, steps={int(1e3 * way / top) + 1000})"
         )
         return Card("Crossing", facts, after)
+
+
+def _under_wheels(
+    train: Train, lines: Sequence[str], of_lines: Mapping[str, Profile]
+) -> tuple[tuple[Profile, ...], tuple[Profile, ...]]:
+    """What the lines are under all wheels of a train, and what these feel with their own profiles.
+
+    Wheels that feel the same share one profile: it is read once for all of them.
+    """
+    surfaces: dict[tuple[str, float | None], Profile] = {}
+    profiles: dict[tuple[str, float | None, int | None], Profile] = {}
+    under: list[Profile] = []
+    felt: list[Profile] = []
+    for line, (_, _, point, _) in zip(lines, train.contacts, strict=True):
+        surface, own = of_lines[line], point.profile
+        if point.patch is not None and not isinstance(surface, Smooth):
+            surface = surfaces.setdefault((line, point.patch), FiniteContact(surface, point.patch))
+        even = isinstance(surface, Smooth)
+        both = surface if own is None else own if even else Sum((surface, own))
+        under.append(surface)
+        felt.append(profiles.setdefault((line, point.patch, None if own is None else id(own)), both))
+    return tuple(under), tuple(felt)
 
 
 def _lines(moving: Movement, train: Train) -> Iterator[str]:

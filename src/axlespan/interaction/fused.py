@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cache
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -52,12 +53,12 @@ class FusedMarch:
         self._fleet = _fleet_arrays(convoy)
         vehicles = [np.unique(convoy.joint.owner_of_dof[own]) for own in convoy.vehicle_dofs]
         ends = np.cumsum([0, *map(len, vehicles)]).tolist()
-        blocks = [slice(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True)]
-        self._chunks = chunks_of(
-            body, (convoy.coupled, convoy.vehicle_dofs, blocks), _CHUNK, _WORTH_A_CHUNK
-        )
+        blocks = [slice(a, b) for a, b in pairwise(ends)]
+        self._chunks = chunks_of(body, (convoy.coupled, convoy.vehicle_dofs, blocks), _CHUNK, _WORTH_A_CHUNK)
         self._watched = body.rank[convoy.tape.watched.dofs]
         self._sums = _compact(convoy.tape.watched.sums, body.rank)
+        for chunk in self._chunks:
+            chunk.take(convoy.structure)
         self._stretch: Stretch | None = None
 
     @classmethod
@@ -82,21 +83,20 @@ class FusedMarch:
             If a contact system is not positive definite.
         """
         convoy, structure = self._convoy, self._convoy.structure
+        weight = self._numbers[3]
         if stretch is not self._stretch:
             self._stretch = stretch
             convoy.tape.arrays[2][...] = convoy.joint.weight  # moving forces stay so
             for chunk in self._chunks:
                 chunk.prepare(stretch, structure.lanes)
-        weight = self._numbers[3]
+                chunk.carry(structure, weight)
         forced = external is not None or bool(len(stretch.forced)) or weight != 0.0
         done = stop
         for chunk in self._chunks:
-            chunk.load(structure, structure.carried, weight)
             done = min(done, self._march(chunk, stretch, forced, external, first, stop))
         convoy.tape.filled = done
         if done < stop:
             raise AnalysisError(f"step {stretch.first + done}: the contact system is not positive definite")
-        self._put_back(stretch, stop - 1)
 
     def _march(
         self, chunk: Chunk, stretch: Stretch, forced: bool, external: FloatArray | None, first: int, stop: int
@@ -128,11 +128,11 @@ class FusedMarch:
             forces, stretch.gap, chunk.contacts, chunk.dofs, values, work, result, static, dofs, blocks, *rest
         )  # fmt: skip
 
-    def _put_back(self, stretch: Stretch, k: int) -> None:
-        """Bring the bodies of the convoy to the step just made."""
+    def show(self, stretch: Stretch, k: int, lanes: Sequence[int]) -> None:
+        """Bring the bodies of the convoy to the step just made; of the structure, the states of some lanes."""
         structure, fleet = self._convoy.structure, self._convoy.fleet
         for chunk in self._chunks:
-            chunk.store(structure)
+            chunk.show(structure, np.asarray(lanes, dtype=np.int64))
         load = self._convoy.known_load(stretch, k)
         if fleet is not None:
             fleet.forces = self._fleet[0].copy()
@@ -175,4 +175,9 @@ def _compact(
     ends = np.cumsum([0, *(len(at) for at, _, _ in parts)]).astype(np.int64)
     of = np.array([which for _, _, which in parts], dtype=np.int64)
     at = np.concatenate([np.empty(0, np.int64), *(rank[at] for at, _, _ in parts)])
-    return ends, of, at.astype(np.uint64), np.concatenate([np.empty(0), *(vector[at] for at, vector, _ in parts)])
+    return (
+        ends,
+        of,
+        at.astype(np.uint64),
+        np.concatenate([np.empty(0), *(vector[at] for at, vector, _ in parts)]),
+    )

@@ -86,34 +86,35 @@ class Chunk:
     def _places(self, flat: IntArray, lanes: int) -> IntArray:
         """Places in the chunk of places in the structure's state."""
         if lanes == 1:
-            return self._body.rank[flat] * self.width
+            return np.asarray(self._body.rank[flat] * self.width)
         dof, lane = np.divmod(flat, lanes)
-        return self._body.rank[dof] * self.width + (lane - self.lane)
+        return np.asarray(self._body.rank[dof] * self.width + (lane - self.lane))
 
     def known(self, weight: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
         """Rows (n_step, n_wheel, n_local) and forces (n_wheel,) of moving forces."""
         place, weights, contacts = self._forced
         return place, weights, weight[contacts]
 
-    def load(self, structure: StructureBody, carried: tuple[IntArray, FloatArray], weight: float) -> None:
-        """Take the lanes' states, and the part of their contact loads that the next step begins with."""
-        rows, lanes = self._body.rows, slice(self.lane, self.lane + self.used)
-        values = structure.state.values
-        self._values[:, :, : self.used] = (
-            values[:, rows, None] if values.ndim == 2 else values[:, rows, lanes]
-        )
+    def take(self, structure: StructureBody) -> None:
+        """Take the lanes' states."""
+        values = structure.state.values.reshape(3, len(self._body.rows), -1)
+        lanes = slice(self.lane, self.lane + self.used)
+        self._values[:, :, : self.used] = values[:, self._body.rows, lanes]
+
+    def carry(self, structure: StructureBody, weight: float) -> None:
+        """Begin with the contact loads of the step before, which the alpha method weighs."""
         self._extra[...] = 0.0
-        if weight and len(carried[0]):
-            dofs, load = carried
+        dofs, load = structure.carried
+        if weight and len(dofs):
+            lanes = slice(self.lane, self.lane + self.used)
             self._extra[self._body.rank[dofs], : self.used] -= weight * load.reshape(len(dofs), -1)[:, lanes]
 
-    def store(self, structure: StructureBody) -> None:
-        """Give the states back."""
-        values, rank = structure.state.values, self._body.rank
-        if values.ndim == 2:
-            values[...] = self._values[:, rank, 0]
-        else:
-            values[:, :, self.lane : self.lane + self.used] = self._values[:, rank, : self.used]
+    def show(self, structure: StructureBody, lanes: IntArray) -> None:
+        """Give back the states of those of some lanes that are here."""
+        own = lanes[(lanes >= self.lane) & (lanes < self.lane + self.used)]
+        if len(own):
+            values = structure.state.values.reshape(3, len(self._body.rank), -1)
+            values[:, :, own] = self._values[:, self._body.rank][:, :, own - self.lane]
 
 
 def chunks_of(

@@ -49,7 +49,12 @@ def forward(
         if i < n:
             at, into = i * L, (i & mask) * L
             if completes:
-                u0, v0, a0, new = read(lanes, u, at), read(lanes, v, at), read(lanes, a, at), read(lanes, x, at + w * L)
+                u0, v0, a0, new = (
+                    read(lanes, u, at),
+                    read(lanes, v, at),
+                    read(lanes, a, at),
+                    read(lanes, x, at + w * L),
+                )
                 if low <= i and i < high:
                     new = plus(new, 1.0, read(lanes, added, at + w * L))
                 put(u, at, plus(plus(u0, 1.0, plus(scaled(dt, v0), late_u, a0)), u_from_a, new))
@@ -125,7 +130,9 @@ def backward(lanes: Any, width: Any, lower: Any, x: Any, end: Any, must: Any) ->
 
 
 @as_compiled
-def move_vehicles(first: Any, kind: Any, begin: Any, entries: Any, parts: int, p: Any, values: Any, work: Any, result: Any) -> None:
+def move_vehicles(
+    first: Any, kind: Any, begin: Any, entries: Any, parts: int, p: Any, values: Any, work: Any, result: Any
+) -> None:
     """Accelerations of vehicles, block after block, from their states (3, n) and the force in the last row of ``work``."""
     u, v, a = values[0], values[1], values[2]
     for b in range(kind.shape[0]):
@@ -192,7 +199,15 @@ def march(
                 extra[:] = 0.0
                 if wp != 0.0:
                     _load(place[k - 1], weights[k - 1], into, forces, -wp, 0, extra)
-                    _load(known_place[k - 1], known_weights[k - 1], np.arange(len(known_forces)), known_forces, -wp, 0, extra)
+                    _load(
+                        known_place[k - 1],
+                        known_weights[k - 1],
+                        np.arange(len(known_forces)),
+                        known_forces,
+                        -wp,
+                        0,
+                        extra,
+                    )
             _load(known_place[k], known_weights[k], np.arange(len(known_forces)), known_forces, -wc, 0, extra)
             for t in range(factors.shape[1]):
                 if factors[k, t] != 0.0:
@@ -214,10 +229,11 @@ def march(
                 for m in range(place.shape[2]):
                     if weights[k, r, m] != 0.0:
                         at = np.uint64(place[k, r, m])
-                        total += weights[k, r, m] * (u[at] + (dt * v[at] + late_u * a[at]) + u_from_a * x[at + np.uint64(w)])
+                        total += weights[k, r, m] * (
+                            u[at] + (dt * v[at] + late_u * a[at]) + u_from_a * x[at + np.uint64(w)]
+                        )
                 gap[into[r]] += total
             _on_ground(fleet, gap)
-            at_matrix = 0
             for s in range(len(ends) - 1):
                 own = contacts[ends[s] : ends[s + 1]]
                 m = len(own)
@@ -237,7 +253,26 @@ def march(
                 end = eliminate(lanes, width, lower, added, low, high)
                 reach[0], reach[1] = backward(lanes, width, lower, added, end, low), end
             _take_fleet(fleet, late, tape, k)
-    forward(lanes, width, p, late, state, x, added, reach, K, C, damped, lower, extra, forced, ring, ahead, True, False)
+    forward(
+        lanes,
+        width,
+        p,
+        late,
+        state,
+        x,
+        added,
+        reach,
+        K,
+        C,
+        damped,
+        lower,
+        extra,
+        forced,
+        ring,
+        ahead,
+        True,
+        False,
+    )
     _write(lanes, state, tape, stop - 1)
     added[reach[0] * len(lanes) + w : reach[1] * len(lanes) + w] = 0.0
     reach[:] = 0

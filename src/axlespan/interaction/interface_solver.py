@@ -23,7 +23,8 @@ from axlespan.errors import AxlespanError
 FloatArray = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
-#: Forces (n,) and their derivatives (n,), or (n, n) where rows depend on each other, from coordinates (n,); rows of constraints are not read.
+#: Forces (n,) from coordinates (n,), and their derivatives (n,), or (n, n) where rows depend on each other; rows of
+#: constraints are not read.
 Evaluate = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 
 # A Newton step below this share of the scale ends the iteration: the error is then about its square.

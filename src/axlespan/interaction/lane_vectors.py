@@ -10,14 +10,14 @@ from functools import reduce
 from typing import Any
 
 from llvmlite import ir
-from numba.core import cgutils, types
+from numba.core import types
 from numba.extending import intrinsic, models, register_model
 
 _DOUBLE = ir.DoubleType()
 _FUSED = ("contract",)  # a product and a sum may be one instruction
 
 
-class Vector(types.Type):  # type: ignore[misc]
+class Vector(types.Type):
     """So many floats."""
 
     def __init__(self, count: int) -> None:
@@ -25,11 +25,11 @@ class Vector(types.Type):  # type: ignore[misc]
         super().__init__(name=f"Vector({count})")
 
 
-class VectorModel(models.PrimitiveModel):  # type: ignore[misc]
+class VectorModel(models.PrimitiveModel):
     """A vector of the processor."""
 
     def __init__(self, manager: Any, kind: Vector) -> None:
-        super().__init__(manager, kind, ir.VectorType(_DOUBLE, kind.count))
+        super().__init__(manager, kind, ir.VectorType(_DOUBLE, kind.count))  # type: ignore[no-untyped-call, unused-ignore]
 
 
 register_model(Vector)(VectorModel)
@@ -45,9 +45,7 @@ def _repeated(builder: Any, value: Any, count: int) -> Any:
     one = builder.insert_element(
         ir.Constant(ir.VectorType(_DOUBLE, count), ir.Undefined), value, ir.Constant(ir.IntType(32), 0)
     )
-    return builder.shuffle_vector(
-        one, one, ir.Constant(ir.VectorType(ir.IntType(32), count), [0] * count)
-    )
+    return builder.shuffle_vector(one, one, ir.Constant(ir.VectorType(ir.IntType(32), count), [0] * count))
 
 
 def _read(context_of_types: Any, lanes: Any, array: Any, at: Any) -> Any:
@@ -65,7 +63,9 @@ def _put(context_of_types: Any, array: Any, at: Any, t: Any) -> Any:
 
     def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         builder.store(
-            arguments[2], _place(context, builder, signature.args[0], arguments[0], arguments[1], t.count), align=8
+            arguments[2],
+            _place(context, builder, signature.args[0], arguments[0], arguments[1], t.count),
+            align=8,
         )
         return context.get_dummy_value()
 
@@ -96,8 +96,9 @@ def _plus_size(context_of_types: Any, t: Any, s: Any) -> Any:
 
     def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         kind = ir.VectorType(_DOUBLE, t.count)
-        magnitude = cgutils.get_or_insert_function(
-            builder.module, ir.FunctionType(kind, [kind]), f"llvm.fabs.v{t.count}f64"
+        name = f"llvm.fabs.v{t.count}f64"
+        magnitude = builder.module.globals.get(name) or ir.Function(
+            builder.module, ir.FunctionType(kind, [kind]), name
         )
         return builder.fadd(arguments[0], builder.call(magnitude, [arguments[1]]))
 
@@ -109,13 +110,17 @@ def _total(context_of_types: Any, t: Any) -> Any:
 
     def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         entries = [
-            builder.extract_element(arguments[0], ir.Constant(ir.IntType(32), lane)) for lane in range(t.count)
+            builder.extract_element(arguments[0], ir.Constant(ir.IntType(32), lane))
+            for lane in range(t.count)
         ]
         return reduce(builder.fadd, entries)
 
     return types.float64(t), code
 
 
-read, put, plus, scaled, plus_size, total = (
-    intrinsic(made) for made in (_read, _put, _plus, _scaled, _plus_size, _total)
-)
+read: Any = intrinsic(_read)
+put: Any = intrinsic(_put)
+plus: Any = intrinsic(_plus)
+scaled: Any = intrinsic(_scaled)
+plus_size: Any = intrinsic(_plus_size)
+total: Any = intrinsic(_total)

@@ -37,25 +37,41 @@ def twist_rows(structure: Structure, positions: FloatArray) -> sp.csr_array:
 
 
 class LineHistories:
-    """Keeps the deck's vertical motion at ``plan.settings.line_points``."""
+    """Keeps the deck's vertical motion at ``plan.settings.line_points``.
 
-    def __init__(self, plan: Plan) -> None:
+    ``like`` is one of the same points on the same structure, whose rows serve here too.
+    """
+
+    positions: FloatArray  # (n_point,) [m]
+    ends: FloatArray  # (2,) [m]
+    free_dofs: IntArray
+    _rows: tuple[sp.csr_array, sp.csr_array]  # of motion and of acceleration, over the free d.o.f.
+    _moved: tuple[sp.csr_array, sp.csr_array]  # the same over the supports that move
+
+    def __init__(self, plan: Plan, like: LineHistories | None = None) -> None:
         self._plan = plan
-        self.positions = np.array(plan.settings.line_points, dtype=float)  # (n_point,) [m]
+        if like is None:
+            self._read_rows(plan)
+        else:
+            self.positions, self.ends, self.free_dofs = like.positions, like.ends, like.free_dofs
+            self._rows, self._moved = like._rows, like._moved
+        n_kept = plan.settings.steps // plan.settings.every + 1
+        self._motion = np.zeros((n_kept, self._rows[0].shape[0]))
+        self._acceleration = np.zeros((n_kept, len(self.positions)))
+
+    def _read_rows(self, plan: Plan) -> None:
+        self.positions = np.array(plan.settings.line_points, dtype=float)
         system, path = plan.crossing.structure.system, deck_line(plan.crossing.structure)
         self.ends = np.array([path.start, path.stop]) if len(self.positions) else np.zeros(0)
         values, slopes = path.rows(self.positions, system.size), path.rows(self.ends, system.size, 1)
         twists = twist_rows(plan.crossing.structure, self.positions)
         both = sp.csr_array(sp.vstack([values, slopes, twists]))
         free = sp.csc_array(both[:, system.free])
-        self.free_dofs: IntArray = np.unique(free.nonzero()[1]).astype(np.int64)
+        self.free_dofs = np.unique(free.nonzero()[1]).astype(np.int64)
         n = len(self.positions)
         compact = sp.csr_array(free[:, self.free_dofs])
         moved = sp.csr_array(both[:, system.prescribed[plan.moving]])
         self._rows, self._moved = (compact, compact[:n]), (moved, moved[:n])
-        n_kept = plan.settings.steps // plan.settings.every + 1
-        self._motion = np.zeros((n_kept, both.shape[0]))
-        self._acceleration = np.zeros((n_kept, n))
 
     def look(self, steps: IntArray, near: FloatArray, positions: FloatArray, forces: FloatArray) -> None:
         """Look at consecutive steps: ``near`` (3, n_step, n_free) of ``free_dofs``."""

@@ -21,6 +21,7 @@ from scipy.linalg import block_diag
 
 from axlespan.contact.laws_of_wheels import WheelLaws
 from axlespan.errors import AnalysisError
+from axlespan.interaction.bodies import StructureBody
 from axlespan.interaction.contact_system import Stretch
 from axlespan.interaction.convoy import Convoy
 from axlespan.interaction.flights import Flights
@@ -150,7 +151,7 @@ class NonlinearCoupling:
         self.field.predict(structure, fleet)
         nothing = np.zeros(0)
         if fleet is None:
-            count = self._on_structure(stretch, k, nothing, nothing, nothing, nothing)
+            count = self._on_structure(structure, stretch, k, nothing, nothing, nothing, nothing)
             self.iterations.append(count)
             return nothing, nothing, nothing
         free = stretch.gap[k] - fleet.at_wheels()
@@ -164,12 +165,13 @@ class NonlinearCoupling:
             )
             forces[group.wheels], approach[group.wheels] = solution.forces, solution.coordinates
             count = max(count, len(solution.residuals))
-        count = max(count, self._on_structure(stretch, k, free, forces, approach, fleet.forces))
+        count = max(count, self._on_structure(structure, stretch, k, free, forces, approach, fleet.forces))
         self.iterations.append(count)
         return forces, approach, free
 
     def _on_structure(
         self,
+        structure: StructureBody,
         stretch: Stretch,
         k: int,
         free: FloatArray,
@@ -191,7 +193,7 @@ class NonlinearCoupling:
             start = np.concatenate([guess[contacts], inner])
             solution = self._solved(stretch.first + k, contacts, system, given, start, field)
             count += len(solution.residuals)
-            if field.settle(solution.forces[:w], solution.forces[w:]):
+            if field.settle(structure, solution.forces[:w], solution.forces[w:]):
                 break
         forces[contacts], approach[contacts] = solution.forces[:w], solution.coordinates[:w]
         return count

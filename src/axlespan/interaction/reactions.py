@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -23,21 +23,25 @@ class Reactions:
 
     N12 (13) with the inertia forces gathered: (1+α) I^c = M_PF ü_F^c + M_PP ü_P^c + α I^p, and
     R_P^c = I^c + [C_PF u̇_F + C_PP u̇_P + K_PF u_F + K_PP u_P - P_P + D_PX X]^c.
+    ``like`` are those of another crossing with the same structure and footprint, whose tables serve here too.
     """
 
-    def __init__(self, plan: Plan) -> None:
+    free_dofs: IntArray
+    _K: FloatArray | sp.csr_array
+    _M: FloatArray | sp.csr_array
+    _C: FloatArray | sp.csr_array
+    _loads: Sequence[tuple[FloatArray, Callable[[FloatArray], FloatArray]]]
+
+    def __init__(self, plan: Plan, like: Reactions | None = None) -> None:
         self.plan = plan
-        system = plan.crossing.structure.system
-        blocks = system.partition
-        together = abs(blocks.K_FP) + abs(blocks.M_FP) + abs(blocks.C_FP)
-        self.free_dofs = np.unique(together.tocoo().row.astype(np.int64))
-        self._K, self._M, self._C = (
-            _operand(sp.csr_array(m)[self.free_dofs]) for m in (blocks.K_FP, blocks.M_FP, blocks.C_FP)
-        )
-        self._loads = [(load.vector[system.prescribed], load.factor) for load in system.loads]
-        self._loads = [(vector, factor) for vector, factor in self._loads if np.any(vector)]
+        self._lines: dict[str, PolynomialPath] = {} if like is None else like._lines
+        if like is None:
+            self._read_tables()
+        else:
+            self.free_dofs, self._K, self._M, self._C = like.free_dofs, like._K, like._M, like._C
+            self._loads = like._loads
         self.paths = self._prescribed_paths()
-        self._inertia = np.zeros(len(system.prescribed))
+        self._inertia = np.zeros(len(plan.crossing.structure.system.prescribed))
         self.restarted: Collection[int] = ()  # steps whose accelerations are those of their own time
         self.released: Mapping[
             int, tuple[FloatArray, float]
@@ -45,19 +49,34 @@ class Reactions:
         # What nonlinear springs add in so many steps (n_step, n_P), in turn.
         self.inner: Callable[[int], FloatArray | None] | None = None
 
+    def _read_tables(self) -> None:
+        system = self.plan.crossing.structure.system
+        blocks = system.partition
+        together = abs(blocks.K_FP) + abs(blocks.M_FP) + abs(blocks.C_FP)
+        self.free_dofs = np.unique(together.tocoo().row.astype(np.int64))
+        self._K, self._M, self._C = (
+            _operand(sp.csr_array(m)[self.free_dofs]) for m in (blocks.K_FP, blocks.M_FP, blocks.C_FP)
+        )
+        loads = [(load.vector[system.prescribed], load.factor) for load in system.loads]
+        self._loads = [(vector, factor) for vector, factor in loads if np.any(vector)]
+
     def _prescribed_paths(self) -> list[tuple[IntArray, PolynomialPath]]:
         """The lines in the prescribed d.o.f., for wheels that stand right over a support."""
-        system, crossing = self.plan.crossing.structure.system, self.plan.crossing
+        lines = self.plan.crossing.contact_lines
+        result = []
+        for line in dict.fromkeys(lines):
+            if line not in self._lines:
+                self._lines[line] = self._prescribed_path(line)
+            wheels = np.array([i for i, name in enumerate(lines) if name == line], dtype=np.int64)
+            result.append((wheels, self._lines[line]))
+        return result
+
+    def _prescribed_path(self, line: str) -> PolynomialPath:
+        structure = self.plan.crossing.structure
+        system = structure.system
         number = np.full(system.size, -1, dtype=np.int64)
         number[system.prescribed] = np.arange(len(system.prescribed))
-        result = []
-        lines = crossing.contact_lines
-        for line in dict.fromkeys(lines):
-            path = crossing.structure.line(line)
-            path = self.plan.settings.under_wheels(path)
-            wheels = np.array([i for i, name in enumerate(lines) if name == line], dtype=np.int64)
-            result.append((wheels, path.renumbered(number)))
-        return result
+        return self.plan.settings.under_wheels(structure.line(line)).renumbered(number)
 
     def of(self, steps: IntArray, near: FloatArray, positions: FloatArray, forces: FloatArray) -> FloatArray:
         """Reactions (n_step, n_P) at consecutive time indices.

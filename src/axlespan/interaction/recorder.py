@@ -36,6 +36,7 @@ _DIVERGED = 1e4
 
 _QUANTITIES = ("displacement", "velocity", "acceleration")
 
+
 @dataclass(eq=False)
 class Histories:
     """Arrays at the kept times; first index time."""
@@ -48,10 +49,17 @@ class Histories:
 
 
 class Recorder:
-    """Keeps histories and watches the run; handed to the march, which knows nothing of its inside."""
+    """Keeps histories and watches the run; handed to the march, which knows nothing of its inside.
+
+    ``like`` is the recorder of another crossing, whose tables serve here too if it reads the same of the structure.
+    """
 
     def __init__(
-        self, plan: Plan, progress: Callable[[int], None] | None = None, watchers: Sequence[Watcher] = ()
+        self,
+        plan: Plan,
+        progress: Callable[[int], None] | None = None,
+        watchers: Sequence[Watcher] = (),
+        like: Recorder | None = None,
     ) -> None:
         self.plan, self._progress = plan, progress
         self.notes: list[str] = list(plan.settings.notes)
@@ -59,13 +67,20 @@ class Recorder:
         self.every = plan.settings.every
         n_kept = plan.settings.steps // self.every + 1
         n_contact, n_vehicle = plan.rows.n_contact, plan.fleet.matrices.size
-        self._sensor_dofs, self._sensor_weights = self._sensors()
-        self.reactions = Reactions(plan)
+        known = like if like is not None and like._reads_the_same(plan) else None
+        self._sensor_rows: sp.csr_array = plan.sensor_rows() if known is None else known._sensor_rows
+        self._sensor_dofs: IntArray
+        self._sensor_weights: FloatArray
+        self._sensor_dofs, self._sensor_weights = (
+            self._sensors() if known is None else (known._sensor_dofs, known._sensor_weights)
+        )
+        self.reactions: Reactions = Reactions(plan, None if known is None else known.reactions)
         self.compatibility, self.energy = CompatibilityMonitor(), EnergyMonitor(plan)
         self.fields = FieldWatcher(plan)
         self.watchers = Watchers([self.energy, self.fields, *watchers])
         self.sections, self.stresses = SectionHistories(plan), StressHistories(plan)
-        self.envelopes, self.line = EnvelopeMonitor(plan), LineHistories(plan)
+        self.envelopes = EnvelopeMonitor(plan)
+        self.line: LineHistories = LineHistories(plan, None if known is None else known.line)
         self._keepers: tuple[Keeper, ...] = (self.sections, self.stresses, self.envelopes, self.line)
         self.balance, self.tension = BalanceMonitor(plan, self.reactions.paths), TensionMonitor(plan)
         self.noise = NoiseMonitor(plan.fleet.weight, plan.fleet.coupled)
@@ -95,8 +110,17 @@ class Recorder:
         self.finite = True
 
     def _sensors(self) -> tuple[IntArray, FloatArray]:
-        self._sensor_rows = self.plan.sensor_rows()
         return as_weights(sp.csr_array(self._sensor_rows[:, self.plan.crossing.structure.system.free]))
+
+    def _reads_the_same(self, plan: Plan) -> bool:
+        own, other = self.plan.settings, plan.settings
+        return (
+            self.plan.crossing.structure is plan.crossing.structure
+            and own.sensors == other.sensors
+            and own.sensor_lines == other.sensor_lines
+            and own.line_points == other.line_points
+            and (own.footprint, own.sleepers) == (other.footprint, other.sleepers)
+        )
 
     # --- during the run ----------------------------------------------------------------------
 
@@ -244,7 +268,13 @@ class Recorder:
             fields=self.fields.fields(self.completed),
             outcome=outcome,
             checks=self._checks(),
-            facts={**facts, **self.counts, **_of(self.more_facts), "completed_steps": self.completed, "notes": tuple(self.notes)},
+            facts={
+                **facts,
+                **self.counts,
+                **_of(self.more_facts),
+                "completed_steps": self.completed,
+                "notes": tuple(self.notes),
+            },
         )
 
     def _checks(self) -> dict[str, Any]:

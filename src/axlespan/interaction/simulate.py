@@ -294,16 +294,18 @@ def run_plans(
     settings = plans[0].settings
     if len(plans) > 1 and any(plan.is_nonlinear for plan in plans):
         return [result for plan in plans for result in run_plans([plan], progress, groundwork)]
-    if settings.basis_tolerance is not None and settings.basis != "full" and not isinstance(settings.basis, ReducedBasis):
+    if (
+        settings.basis_tolerance is not None
+        and settings.basis != "full"
+        and not isinstance(settings.basis, ReducedBasis)
+    ):
         return _refined(plans, progress, settings.basis_tolerance)
     laid = groundwork if groundwork is not None and groundwork.serves(plans) else Groundwork.of(plans)
     facts = {"basis_time": laid.seconds} if settings.basis == "reduced" else None
     return _driven(plans, progress, laid.prepared, laid.basis, facts, laid.start)
 
 
-def _refined(
-    plans: Sequence[Plan], progress: Callable[[int], None] | None, tolerance: float
-) -> list[Result]:
+def _refined(plans: Sequence[Plan], progress: Callable[[int], None] | None, tolerance: float) -> list[Result]:
     """Compute with richer and richer bases until the estimated error is within the tolerance."""
     results: list[Result] = []
     for blocks, cutoff in _BASES:
@@ -333,9 +335,11 @@ def _driven(
         begin_nonlinear(plans[0], factors) if plans[0].is_nonlinear else None
     )  # a single crossing then
     starts = [start_of(plan, factors) for plan in plans] if nonlinear is None else [nonlinear[0]]
-    recorders = [
-        Recorder(plan, progress, [error] if error else []) for plan, error in zip_longest(plans, errors)
-    ]
+    recorders: list[Recorder] = []
+    for plan, error in zip_longest(plans, errors):
+        recorders.append(
+            Recorder(plan, progress, [error] if error else [], recorders[0] if recorders else None)
+        )
     lanes = [
         Lane.at_start(plan, start, keeper)
         for plan, start, keeper in zip(plans, starts, recorders, strict=True)

@@ -53,6 +53,7 @@ class SpringField:
         self.largest = len(self.active)  # unknowns of a step, so far
         self.history = [self.q]  # of the start and each step, where springs stand on supports
         self._columns: FloatArray | None = None
+        self._response: FloatArray | None = None  # of the last attempt of a step, to loads on the structure
 
     # --- compliance ------------------------------------------------------------------------------
 
@@ -115,6 +116,7 @@ class SpringField:
 
     def rest(self) -> None:
         """A step in which no spring deviates and no wheel is there."""
+        self._response = None
         self.q, self.e, self.rate = np.zeros(self.n), self.e_free, self.rate_free
 
     def meet(self, held: IntArray, weights: FloatArray, at: IntArray, contacts: IntArray) -> None:
@@ -158,7 +160,7 @@ class SpringField:
         """Springs that deviate, and all that are d.o.f. of elements."""
         return np.union1d(np.flatnonzero(self.q), self.springs.coupled).astype(np.int64)
 
-    def settle(self, forces: FloatArray, deviation: FloatArray) -> bool:
+    def settle(self, structure: StructureBody, forces: FloatArray, deviation: FloatArray) -> bool:
         """Take a solution; false where springs deviate that were left out: they are active from now on."""
         if not self.n:
             return True
@@ -166,15 +168,15 @@ class SpringField:
         q = np.zeros(self.n)
         q[self.active] = deviation
         e = self.e_free.copy()
-        if len(self.active):
-            e -= deviation @ self._columns[self.active]
-        if len(self._at):
-            loads = (self._weights * forces[self._at][:, None]).ravel()
-            on_path = np.bincount(self._held.ravel(), loads, minlength=len(self._path))
-            used = np.flatnonzero(on_path)
-            e[: self.n_own] -= on_path[used] @ self._path.take(used, axis=0)
-        if self.n_fleet and len(forces):
-            e[self.n_own :] -= forces @ self._of_wheels[self._contacts]
+        self._respond(structure, forces, q[: self.n_own])
+        if self._response is not None:
+            moved = structure.integrator.u_from_a * self._response[self._dofs]
+            e[: self.n_own] += np.asarray(self._local @ moved)
+        if self.n_fleet:
+            own = slice(self.n_own, None)
+            e[own] -= self._columns[own, own] @ q[own]
+            if len(forces):
+                e[own] -= forces @ self._of_wheels[self._contacts]
         rate = self.rate_free + self._rate_from_e * (e - self.e_free)
         left_out = self.springs.deviation(e, rate) != 0.0
         left_out[self.active] = False
@@ -185,6 +187,22 @@ class SpringField:
         self.largest = max(self.largest, len(self.active))
         return False
 
+    def _respond(self, structure: StructureBody, forces: FloatArray, inner: FloatArray) -> None:
+        """Acceleration of the structure under wheels and springs; one solve tells what all springs do."""
+        self._response = None
+        if not self.n_own:
+            return
+        total = np.asarray(self._rows.T @ inner)
+        if len(self._at):
+            loads = (self._weights * forces[self._at][:, None]).ravel()
+            total[structure.columns.held] += np.bincount(
+                self._held.ravel(), loads, minlength=len(structure.columns.held)
+            )
+        if np.any(total):
+            integrator = structure.integrator
+            self._total = total
+            self._response = integrator.factor.solve(-integrator.weight_c * total)
+
     def take(self, structure: StructureBody, load: FloatArray | None, known: FloatArray | None) -> None:
         """Give the structure the loads of the wheels (n_held,) and the springs, and complete the step."""
         if self.n:
@@ -192,19 +210,15 @@ class SpringField:
             self.active = self._active()
             if self._ground.nnz:
                 self.history.append(self.q)
-        inner = self.q[: self.n_own]
-        if not np.any(inner):
+        if self._response is None:
             structure.take(load, known)
             return
-        integrator = structure.integrator
-        total = np.asarray(self._rows.T @ inner)
-        if load is not None:
-            total[structure.columns.held] += load
-        structure.stepper.add(integrator.factor.solve(-integrator.weight_c * total))
+        structure.stepper.add(self._response)
         if known is not None:
-            total[structure.columns.held] += known
+            self._total[structure.columns.held] += known
         structure.stepper.finish()
-        structure.carry(total)
+        structure.carry(self._total)
+        self._response = None
 
     def take_fleet(self, fleet: FleetBody, forces: FloatArray) -> None:
         """Give the vehicles the contact forces (n_coupled,) and their springs, and complete the step."""

@@ -26,7 +26,7 @@ def surface_notes(crossing: Crossing, end: float) -> list[str]:
     seen: set[int] = set()
     for run in crossing.runs:
         low, high = _way(run, end)
-        for name, profile in zip(run.lines, run.profiles, strict=True):
+        for name, profile in zip(run.lines, run.surfaces, strict=True):
             if id(profile) not in seen:
                 seen.add(id(profile))
                 notes += [

@@ -99,7 +99,7 @@ def _profile(crossing: Crossing, result: Result | None) -> dict[str, Any] | None
     if not end > begin:
         return None
     s = np.linspace(begin, end, _PROFILE)
-    r = np.asarray(crossing.runs[0].profiles[0].value(s), dtype=float)
+    r = np.asarray(crossing.runs[0].surfaces[0].value(s), dtype=float)
     if not (np.all(np.isfinite(r)) and np.any(r)):
         return None
     return {"from": begin, "step": (end - begin) / (_PROFILE - 1), "r": np.round(r, 8).tolist()}

@@ -129,4 +129,4 @@ def with_nonlinear_element(
     rows = sp.csr_array(sp.csr_array(unit) @ system.elimination)
     group = SpringRows(name, ElementLaw(element), rows, np.zeros(m))
     changed = replace(system, nonlinear=(*system.nonlinear, group))
-    return replace(body, system=changed)  # type: ignore[type-var, no-any-return]
+    return replace(body, system=changed)  # type: ignore[type-var]

@@ -30,7 +30,7 @@ from axlespan.report.spectra import spectra
 from axlespan.report.stored import Stored, is_study, opened
 from axlespan.report.tables import badge, check_table, peak_tables, verdict_table
 from axlespan.report.units import number
-from axlespan.report.words import case_content, given_values, sentences
+from axlespan.report.words import case_content, given_values, sentences, shortened
 
 #: Name of the page beside the result.
 PAGE = "report.html"
@@ -55,16 +55,23 @@ def write_report(folder: str | PathLike[str], page: str | PathLike[str] | None =
     OSError
         If the page cannot be written.
     """
+    return write_told(folder, page)[0]
+
+
+def write_told(
+    folder: str | PathLike[str], page: str | PathLike[str] | None = None
+) -> tuple[Path, list[str]]:
+    """Write a page as :func:`write_report` does; its path, and what it says that its source lacks."""
     place = Path(folder)
     target = Path(page) if page is not None else (place if place.is_dir() else place.parent) / PAGE
-    text = result_page(place)
+    text, notices = _told(place)
     part = target.with_name(f".{target.name}.{os.getpid()}-{secrets.token_hex(4)}.part")
     try:
         part.write_text(text, encoding="utf-8")
         os.replace(part, target)
     finally:
         part.unlink(missing_ok=True)
-    return target
+    return target, notices
 
 
 def result_page(folder: str | PathLike[str]) -> str:
@@ -75,12 +82,17 @@ def result_page(folder: str | PathLike[str]) -> str:
     folder : path
         Of a result or a study.
     """
-    if is_study(Path(folder)):
+    return _told(Path(folder))[0]
+
+
+def _told(folder: Path) -> tuple[str, list[str]]:
+    """The page, and what its source lacks."""
+    if is_study(folder):
         from axlespan.report.study_page import study_page
 
-        return study_page(Path(folder))
-    with opened(Path(folder)) as stored:
-        return _page(stored)
+        return study_page(folder)
+    with opened(folder) as stored:
+        return _page(stored), stored.notices
 
 
 def _page(stored: Stored) -> str:
@@ -88,7 +100,8 @@ def _page(stored: Stored) -> str:
     case = case_content(stored.text("case"))
     drawing = stored.drawing()
     units = units_of(stored, drawing)
-    ends = _ends(drawing, summary)
+    # without the file nobody knows what of the running line is bridge and what is track on the ground
+    ends = None if stored.file is None else _ends(drawing, summary)
     pack = Pack()
     content: dict[str, Any] = {"title": _title(summary, stored)}
     if len(stored.time) > 1:
@@ -104,7 +117,7 @@ def _page(stored: Stored) -> str:
         content["space"] = None
     content["arrays"] = pack.directory()
     values = {
-        "title": escape(content["title"]),
+        "title": shortened(content["title"]),
         "version": escape(str(summary.get("version") or axlespan.__version__)),
         "badge": _outcome_badge(summary),
         "notices": _notices(stored, summary, content),
@@ -133,9 +146,10 @@ def _summary(stored: Stored) -> Mapping[str, Any]:
         "version": stored.text("version"),
     }
     if path is not None:
-        stored.notices.append(
-            "There is no summary.json: the run may have been stopped. Tables are made from result.nc."
-        )
+        if not any(notice.startswith("summary.json") for notice in stored.notices):
+            stored.notices.append(
+                "There is no summary.json: the run may have been stopped. Tables are made from result.nc."
+            )
         try:
             made: dict[str, Any] = json_ready(summary_of(read_result(path)))
             return made | head
@@ -233,16 +247,20 @@ def _cards(summary: Mapping[str, Any]) -> str:
     forces = summary.get("contact_forces") or {}
     if forces.get("largest"):
         row = forces["largest"]
-        found.append(
-            ("Largest contact force", f"{number(1e-3 * row['force_N'])} kN", f"wheel {row['contact']}")
-        )
+        if row.get("force_N") is not None:
+            found.append(
+                ("Largest contact force", f"{number(1e-3 * row['force_N'])} kN", f"wheel {row['contact']}")
+            )
         lost = forces.get("largest_unloading")
         if lost is not None:
             found.append(("Largest unloading", f"{number(100.0 * lost, 3)} %", "of the static force"))
     body = (summary.get("vehicle_accelerations") or {}).get("body.z")
     if body:
-        value = max(abs(body["min"]), abs(body["max"]))
-        found.append(("Largest acceleration of a body", f"{number(value)} m/s²", "vertical"))
+        ends = [(body[end], body.get(f"{end}_vehicle")) for end in ("min", "max") if body.get(end) is not None]
+        if ends:
+            value, vehicle = max(ends, key=lambda found: abs(found[0]))
+            where = "vertical, at its center" if vehicle is None else f"vehicle {vehicle}, at its center"
+            found.append(("Largest acceleration of a body", f"{number(value)} m/s²", where))
     return "".join(
         f'<div class="card"><div class="what">{escape(a)}</div><div class="value">{escape(b)}</div>'
         f'<div class="where">{escape(c)}</div></div>'

@@ -41,7 +41,7 @@ def spectra(stored: Stored, pack: Pack) -> list[dict[str, Any]]:
 def _spectrum(stored: Stored, pack: Pack, group: Group, step: float) -> dict[str, Any] | None:
     names = names_of(stored, group)
     factor, unit = shown_unit(group.unit)
-    sizes = [float(np.nanstd(stored.column(group.variable, i))) for i in group.columns]
+    sizes = [_spread(stored.column(group.variable, i)) for i in group.columns]
     found = {}
     bandwidth, f = 1.5, np.zeros(0)
     for i in chosen_columns(sizes, _MOST):
@@ -61,6 +61,11 @@ def _spectrum(stored: Stored, pack: Pack, group: Group, step: float) -> dict[str
         "psd": 1.0 / (2.0 * float(f[1]) * bandwidth),
         "busy": _busy(f, curves),
     }
+
+
+def _spread(values: FloatArray) -> float:
+    finite = values[np.isfinite(values)]
+    return float(finite.std()) if len(finite) else 0.0
 
 
 def _busy(f: FloatArray, curves: list[FloatArray]) -> float:

@@ -16,6 +16,7 @@ import numpy.typing as npt
 from axlespan.errors import InputError
 from axlespan.io.drawing import Drawing, read_drawing
 from axlespan.io.results import FORMAT_VERSION
+from axlespan.io.summary import FORMAT_VERSION as SUMMARY_VERSION
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -192,8 +193,15 @@ def _summary(folder: Path, notices: list[str]) -> dict[str, Any]:
     except (OSError, ValueError) as error:
         notices.append(f"{SUMMARY} cannot be read ({error}); its tables are made anew.")
         return {}
-    good = isinstance(found, dict) and found.get("format") == "axlespan summary"
-    return found if good else {}
+    if not isinstance(found, dict) or found.get("format") != "axlespan summary":
+        return {}
+    number = found.get("format_version")
+    if isinstance(number, int) and number > SUMMARY_VERSION:
+        notices.append(
+            f"{SUMMARY} was written by axlespan {found.get('version')}, later than this one; its tables are made anew."
+        )
+        return {}
+    return found
 
 
 def _require_known(file: h5py.File, path: Path) -> None:

@@ -16,12 +16,13 @@ from axlespan.report.study_quantities import KMH, TRAINS, envelope_plot, label, 
 from axlespan.report.study_store import StoredStudy, histories, open_study
 from axlespan.report.tables import badge, bar
 from axlespan.report.units import number, plain
+from axlespan.report.words import shortened
 
 _VERDICTS = {"fail": ("bad", "✗", "limits are exceeded"), "pass": ("good", "✓", "all limits are kept")}
 
 
-def study_page(folder: Path) -> str:
-    """The page of a study as text.
+def study_page(folder: Path) -> tuple[str, list[str]]:
+    """The page of a study as text, and what the study lacks.
 
     Raises
     ------
@@ -44,7 +45,7 @@ def study_page(folder: Path) -> str:
     content["histories"] = histories(study, pack, _interesting(study, quantities))
     content["arrays"] = pack.directory()
     values = {
-        "title": escape(content["title"]),
+        "title": shortened(content["title"]),
         "version": escape(study.store.header.version),
         "badge": _badge(study),
         "notices": _notices(study),
@@ -53,7 +54,7 @@ def study_page(folder: Path) -> str:
         "checks": _checks(study),
     }
     scripts = ("inflate", "data", "export", "plots", "maps", "scenarios", "chrome", "study")
-    return assembled("study", values, content, pack, scripts)
+    return assembled("study", values, content, pack, scripts), study.notices
 
 
 def _summary(folder: Path) -> dict[str, Any]:
@@ -134,7 +135,8 @@ def _checks(study: StoredStudy) -> str:
             f"<td>{escape(words)}</td><td>{badge('fail' if outcomes.get('fail') else 'pass')}</td></tr>"
         )
     if not rows:
-        return "<p>No limits of standards were checked in this study.</p>"
+        done = len(study.answers.columns["id"])
+        return f"<p>No {'limits of standards were checked in this study' if done else 'scenario is done yet'}.</p>"
     heads = "".join(
         f'<th scope="col">{h}</th>' for h in ("Check", "Used at most", "By", "Scenarios", "Verdict")
     )

@@ -62,7 +62,8 @@ def envelope_plot(study: StoredStudy, pack: Pack, quantity: str) -> dict[str, An
     if not found or max(len(e.speed) for e in found.values()) < 2:
         return None
     words, unit, factor = label(quantity)
-    ranked = sorted(found, key=lambda train: -float(np.abs(found[train].value).max()))
+    sign = 1.0 if next(iter(found.values())).lowest else -1.0
+    ranked = sorted(found, key=lambda train: sign * float(found[train].value[found[train].worst]))
     drawn = [train for train in found if train in ranked[:TRAINS]]  # in the same order and colors everywhere
     series = [
         {

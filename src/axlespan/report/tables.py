@@ -14,6 +14,11 @@ Summary = Mapping[str, Any]
 # Rows of a table; the rest is told.
 _ROWS = 60
 
+_MEMORY = "from memory"
+_UNCHECKED = (
+    "* Numbers of the standard from memory: check against the standard, replace them under assessment.limits."
+)
+
 _BADGES = {
     "pass": ("good", "✓", "passed"),
     "fulfilled": ("good", "✓", "passed"),
@@ -44,17 +49,22 @@ def badge(word: str) -> str:
 def verdict_table(summary: Summary) -> str:
     """Limits of standards with how far they are used; empty if none were checked."""
     rows = []
-    for verdict in (summary.get("verdicts") or [])[:_ROWS]:
+    unchecked = False
+    for verdict in sorted(summary.get("verdicts") or [], key=_order)[:_ROWS]:
         unit = _unit_text(str(verdict.get("unit") or ""))
         factor = shown_unit(str(verdict.get("unit") or ""))[0]
+        if verdict.get("unit") == "m/s":  # of a train
+            factor, unit = 3.6, "km/h"
         clause = escape(str(verdict.get("clause") or ""))
         source = verdict.get("source")
+        memory = verdict.get("outcome") != "not assessed" and _MEMORY in str(source)
+        unchecked |= memory
         title = f' title="{escape(str(source), quote=True)}"' if source else ""
         reason = verdict.get("reason") or verdict.get("note")
         why = f'<div class="why">{escape(str(reason))}</div>' if reason else ""
         least = "at least " if verdict.get("at_least") and verdict.get("limit") is not None else ""
         rows.append(
-            f'<tr><td data-label="Quantity">{escape(str(verdict.get("quantity") or ""))}{why}</td>'
+            f'<tr><td data-label="Quantity"><div>{escape(str(verdict.get("quantity") or ""))}{"*" if memory else ""}{why}</div></td>'
             f'<td data-label="Clause"{title}>{clause}</td>'
             f'<td class="n" data-label="Value">{_amount(verdict.get("value"), factor, unit)}</td>'
             f'<td class="n" data-label="Limit">{least}{_amount(verdict.get("limit"), factor, unit)}</td>'
@@ -65,7 +75,18 @@ def verdict_table(summary: Summary) -> str:
     if not rows:
         return ""
     heads = ("Quantity", "Clause", "Value", "Limit", "Used", "Where, when", "Verdict")
-    return _table("Verdicts against limits of standards", heads, rows, numeric=(2, 3))
+    table = _table("Verdicts against limits of standards", heads, rows, numeric=(2, 3))
+    return table + (f'<p class="note">{_UNCHECKED}</p>' if unchecked else "")
+
+
+def _order(verdict: Mapping[str, Any]) -> tuple[int, float]:
+    """What fails first, then by how much of the limit is used; what was not assessed last."""
+    used = verdict.get("utilization")
+    if verdict.get("outcome") == "fail":
+        return 0, -(math.inf if used is None else float(used))
+    if used is not None:
+        return 1, -float(used)
+    return (3 if verdict.get("outcome") == "not assessed" else 2), 0.0
 
 
 def bar(share: Any) -> str:
@@ -148,7 +169,7 @@ def _wheels(summary: Summary) -> str:
         row = forces.get(key)
         if row:
             rows.append(
-                f'<tr><td>{words}</td><td class="n">{_amount(row["force_N"], 1e-3)}</td>'
+                f'<tr><td>{words}</td><td class="n">{_amount(row.get("force_N"), 1e-3)}</td>'
                 f'<td class="n">{number(row["ratio_to_static"])}</td><td>{escape(str(row["contact"]))}</td>'
                 f'<td class="n">{number(row["position_m"])}</td><td class="n">{number(row["time_s"])}</td></tr>'
             )

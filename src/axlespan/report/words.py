@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from html import escape
 from io import StringIO
 from typing import Any
 
 from axlespan.report.units import plain
 
-# Rows of the table of given values, and characters of one of them.
+# Rows of the table of given values, and characters of one of them; characters of a title.
 _ROWS, _LONG = 80, 120
+_TITLE = 160
 
 _PROFILES = {
     "harmonic": "regular waves",
@@ -17,6 +19,17 @@ _PROFILES = {
     "spectrum": "a random profile made from a spectrum",
     "none": "none",
 }
+
+
+def shortened(title: str) -> str:
+    """A title as HTML, its end cut off where it is longer than anybody reads.
+
+    Examples
+    --------
+    >>> shortened("a < b"), len(shortened("x" * 1000))
+    ('a &lt; b', 160)
+    """
+    return escape(title if len(title) <= _TITLE else f"{title[: _TITLE - 1].rstrip()}…")
 
 
 def case_content(text: str) -> dict[str, Any]:
@@ -83,7 +96,7 @@ def _computation(run: Mapping[str, Any], summary: Mapping[str, Any]) -> str:
     if step is None or steps is None:
         return ""
     coupling = (summary.get("computation") or {}).get("coupling") or "direct"
-    taken = f"{steps:,} steps".replace(",", "\u202f")
+    taken = f"{steps:,} step{'s' if steps != 1 else ''}".replace(",", "\u202f")
     if done is not None and done != steps:
         taken = f"{done} of {steps} steps"
     return (

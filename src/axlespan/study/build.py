@@ -21,6 +21,7 @@ from axlespan.study.built import BuiltStructure
 from axlespan.study.case_analysis import EveryFew
 from axlespan.study.loader import LoadedCase
 from axlespan.study.pointing import pointing
+from axlespan.study.stated import stated_otherwise
 from axlespan.vehicles import Train
 
 #: How notes begin that are warnings.
@@ -92,7 +93,7 @@ def build(
         settings = settings_for(crossing, method=method, **options)
         plan = plan_for(crossing, settings)
     warnings = (*loaded.warnings, *(f"{loaded.source.file}: structure: {word}" for word in made.warnings))
-    warnings = (*warnings, *overlaps(train, loaded.source))
+    warnings = (*warnings, *overlaps(train, loaded.source), *stated_otherwise(loaded))
     return BuiltCase(loaded, crossing, plan, warnings, made.facts)
 
 
@@ -110,7 +111,8 @@ def _crossing(loaded: LoadedCase, structure: Structure, train: Train) -> Crossin
             own = None if other.irregularity is None else irregularity_of(other.irregularity, structure)
         with pointing(loaded, path):
             _require_lines(other, structure)
-        made = train_of(loaded, structure, f"{path}.train", other.train, _lines(other))
+        before = len(train.placements) + sum(len(one.train.placements) for one in others)
+        made = train_of(loaded, structure, f"{path}.train", other.train, _lines(other), before)
         with pointing(loaded, path):
             others.append(OtherTrain(train=made, irregularity=own, **_movement(other)))
     crossing = Crossing(

@@ -5,19 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-import numpy as np
-
 from axlespan import irregularity as profiles
 from axlespan.errors import InputError
 from axlespan.interaction.crossing import Irregularity
 from axlespan.irregularity import Profile
 from axlespan.running.structure import Structure
-from axlespan.study.case_crossing import (
+from axlespan.study.build_measured import table_of
+from axlespan.study.case_defects import Defect
+from axlespan.study.case_irregularity import (
     Bounded,
     HarmonicIrregularity,
     LinesIrregularity,
     NoIrregularity,
     SpectrumIrregularity,
+    SumIrregularity,
     TableIrregularity,
 )
 
@@ -29,6 +30,8 @@ Case = (
     | HarmonicIrregularity
     | TableIrregularity
     | SpectrumIrregularity
+    | Defect
+    | SumIrregularity
     | LinesIrregularity
     | None
 )
@@ -61,13 +64,21 @@ def _require_line(structure: Structure, name: str, field: str) -> None:
 
 
 def _of_line(name: str, case: Case) -> Profile:
-    try:
+    with _under(f"lines.{name}"):
         return _profile(case)
+
+
+@contextmanager
+def _under(path: str) -> Iterator[None]:
+    """Say of an error that it stands under a path of the irregularity."""
+    try:
+        yield
     except InputError as error:
         if error.place is not None:
             raise
-        field = ".".join(part for part in ("lines", name, error.field) if part)
-        raise InputError(error.rule, field=field, fix=error.fix) from error
+        field = ".".join(part for part in (path, error.field) if part)
+        more = {"value": error.value} if error.has_value else {}
+        raise InputError(error.rule, field=field, fix=error.fix, **more) from error
 
 
 def _profile(case: Case) -> Profile:
@@ -78,20 +89,23 @@ def _profile(case: Case) -> Profile:
             return _bounded(profiles.Harmonic(case.amplitude, case.wavelength, case.phase), case)
         return profiles.Harmonic(case.amplitude, case.wavelength, case.phase, case.from_, case.to)
     if isinstance(case, TableIrregularity):
-        table: Profile
-        if case.points is not None:
-            points = np.array(case.points)
-            table = profiles.Table(points[:, 0], points[:, 1])
-        else:
-            assert case.file is not None  # the schema asks for one of the two
-            table = profiles.Table.from_csv(case.file)
-        return _bounded(table, case)
+        return _bounded(table_of(case), case)
+    if isinstance(case, SumIrregularity):
+        return profiles.Sum(tuple(_terms(case)))
+    if isinstance(case, Defect):
+        return case.profile
     assert isinstance(case, SpectrumIrregularity)
     shape = _spectrum(case)
     band = _band(case) or shape.wavelengths
     with _blaming_the_band(case):
         made = profiles.realize(shape, _length(case, band), seed=case.seed, wavelengths=band)
     return _finished(made, case)
+
+
+def _terms(case: SumIrregularity) -> Iterator[Profile]:
+    for number, one in enumerate(case.of):
+        with _under(f"of.{number}"):
+            yield _profile(one)
 
 
 def _spectrum(case: SpectrumIrregularity) -> profiles.Spectrum:

@@ -10,6 +10,7 @@ from axlespan.errors import InputError
 from axlespan.running.structure import MAIN_LINE, Structure
 from axlespan.study import case_train
 from axlespan.study.build_multibody import loaded_train, require_line, vehicle_of_bodies
+from axlespan.study.build_wheels import with_own_wheels
 from axlespan.study.case_multibody import Multibody
 from axlespan.study.case_placing import Unit, first_wheels
 from axlespan.study.case_vehicle_imported import MatricesVehicle, MeshVehicle
@@ -37,6 +38,7 @@ def train_of(
     path: str = "train",
     entries: Sequence[case_train.Entry] | None = None,
     lines: Mapping[str, str] | None = None,
+    first: int = 0,
 ) -> Train:
     """Build a train of a case, as the vehicles that the analysis wants.
 
@@ -49,6 +51,8 @@ def train_of(
         Where the train stands in the file, and its entries; those of the first train when left out.
     lines : mapping, optional
         Lines of the structure by those that the wheels name, where they differ.
+    first : int
+        Vehicles of the trains before, which the names of wheels count.
 
     Raises
     ------
@@ -69,16 +73,18 @@ def train_of(
     with pointing(loaded, path):
         heads = first_wheels(entries, [one.unit for one in built])
     placed = [
-        Placement(item.vehicle, behind + item.behind)
-        for one, places in zip(built, heads, strict=True)
+        (Placement(item.vehicle, behind + item.behind), number)
+        for number, (one, places) in enumerate(zip(built, heads, strict=True))
         for behind in places
         for item in one.train.placements
     ]
-    placed.sort(key=lambda item: item.behind)
-    train = Train(tuple(placed), _name(placed, built))
+    ordered = sorted(placed, key=lambda pair: pair[0].behind)
+    placements = [item for item, _ in ordered]
+    train = Train(tuple(placements), _name(placements, built))
     with pointing(loaded, path):
         train.require_apart()
-        return _as_wanted(train, case.analysis.vehicles, case.analysis.gravity)
+        train = _as_wanted(train, case.analysis.vehicles, case.analysis.gravity)
+    return with_own_wheels(train, entries, [number for _, number in ordered], loaded, path, first)
 
 
 def _name(placed: Sequence[Placement], built: Sequence[_Built]) -> str:

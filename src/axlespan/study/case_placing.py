@@ -11,6 +11,7 @@ from pydantic import Field, model_validator
 from axlespan.errors import InputError
 from axlespan.study.case_contact import KINDS as CONTACT_KINDS
 from axlespan.study.case_contact import Contact
+from axlespan.study.case_wheels import Flats, Patch, Waves
 from axlespan.study.checks import Part
 from axlespan.study.quantities import Distance, Few, Flag, Name, Spacing
 from axlespan.units import LENGTH, show
@@ -29,6 +30,12 @@ class Placed(Part):
     """Distance of the first wheel behind the first wheel of the train."""
     contact: Annotated[Contact | None, Field(json_schema_extra=CONTACT_KINDS.words_in_schema)] = None
     """Law of contact of its wheels; that of the analysis when left out."""
+    contact_patch: Patch | None = None
+    """Length over which its tyres feel the mean of the surface; they feel it at a point when left out."""
+    wheel_flat: Annotated[Flats | None, Field(examples=["{length: 50 mm, wheels: [1.1]}"])] = None
+    """A flat on its wheels, or several, each on wheels of its own."""
+    out_of_round: Annotated[Waves | None, Field(examples=["{amplitude: 0.2 mm, order: 3}"])] = None
+    """Waves around its wheels, or several orders of them."""
     line: Annotated[Name | None, Field(examples=["left"])] = None
     """Running line of the structure that its wheels run on; the main one when left out."""
     reversed: Flag = False

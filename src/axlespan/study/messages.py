@@ -132,10 +132,15 @@ def _unknown_key(loc: Sequence[Step], path: tuple[Step, ...]) -> tuple[str, str]
     if right:
         return "unknown key", f"Did you mean {right}?"
     homes = [section for section, model in _sections() if name in _keys(model)]
-    if homes:
+    if homes and _stands_high(path):
         return "does not belong here", f"Move it to {homes[0]}"
     known = [key for model in models for key in _keys(model)]
     return "unknown key", f"Keys here are {listed(known)}" if known else "Delete it"
+
+
+def _stands_high(path: tuple[Step, ...]) -> bool:
+    """Whether a key is one of the file, of a section, or of an item of a list: deeper ones have other meanings."""
+    return len(path) <= 2 or (len(path) == 3 and isinstance(path[1], int))
 
 
 def _right_key(loc: Sequence[Step]) -> str | None:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from axlespan.card import Card, Shown, some
 from axlespan.errors import InputError
+from axlespan.irregularity import Profile, Sum
+from axlespan.model.dofs import nearest
 from axlespan.model.materials import require_positive
 from axlespan.vehicles.vehicle import GRAVITY, ContactPoint, Vehicle
 
@@ -168,6 +170,52 @@ class Train(Shown):
         placements = tuple(Placement(masses[id(item.vehicle)], item.behind) for item in self.placements)
         return Train(placements, f"{self.name} as moving masses")
 
+    def with_wheels(
+        self,
+        wheels: Collection[str] | None = None,
+        *,
+        profile: Profile | None = None,
+        patch: float | None = None,
+    ) -> Train:
+        """The same train, some wheels of which have profiles of their own, or feel the mean over a patch.
+
+        Parameters
+        ----------
+        wheels : collection of str, optional
+            Names of contacts, as in :attr:`contact_names`; all when left out.
+        profile : Profile, optional
+            r(x) that these wheels alone feel [m], over their position along the line, on which they roll without
+            slip: ``WheelFlat``, ``OutOfRound``. It adds to that of the line, and to those that they have.
+        patch : float, optional
+            Length of the contact patch of a tyre [m]: the wheel feels the mean of the line's profile over it.
+
+        Raises
+        ------
+        InputError
+            If there is no such wheel, or the patch is not positive.
+        """
+        if patch is not None:
+            require_positive(patch, "patch")
+        names = self.contact_names
+        for name in wheels or ():
+            if name not in names:
+                raise nearest(name, list(names), "wheel")
+        wanted = set(names if wheels is None else wheels)
+        made: dict[tuple[int, tuple[int, ...]], Vehicle] = {}
+        placements = []
+        for i, item in enumerate(self.placements):
+            vehicle, points = item.vehicle, item.vehicle.contacts
+            chosen = tuple(n for n, point in enumerate(points) if f"{i + 1}.{point.name}" in wanted)
+            key = id(vehicle), chosen
+            if chosen and key not in made:
+                new = [
+                    _changed(point, profile, patch) if n in chosen else point
+                    for n, point in enumerate(points)
+                ]
+                made[key] = replace(vehicle, contacts=tuple(new))
+            placements.append(Placement(made[key] if chosen else vehicle, item.behind))
+        return Train(tuple(placements), self.name)
+
     def reversed(self) -> Train:
         """The same train with its tail ahead: the last vehicle leads, every vehicle the other way round."""
         kinds = {id(item.vehicle): item.vehicle for item in self.placements}
@@ -247,3 +295,11 @@ class Train(Shown):
             ("weight", f"{forces.sum() / 1e3:.6g} kN"),
         ]
         return Card(f"Train: {self.name}", facts, "asp.Crossing(bridge, train, speed=250 / 3.6)")
+
+
+def _changed(point: ContactPoint, profile: Profile | None, patch: float | None) -> ContactPoint:
+    """A contact with a further profile of its wheel, and perhaps another patch."""
+    own = point.profile if profile is None else profile
+    if profile is not None and point.profile is not None:
+        own = Sum((point.profile, profile))
+    return replace(point, profile=own, patch=point.patch if patch is None else patch)

@@ -13,6 +13,7 @@ import scipy.sparse as sp
 
 from axlespan.card import Card, Shown, some
 from axlespan.errors import InputError
+from axlespan.irregularity.profile import Profile
 from axlespan.linalg.eigen import lowest_modes
 from axlespan.linalg.factor import NotPositiveDefinite, factorize
 from axlespan.model.compile import compile_model
@@ -54,6 +55,8 @@ class ContactPoint:
     force: float = 0.0  # [N] downward, of a moving force
     law: WheelLaw | None = None  # of contact; None: that of the analysis
     radius: float | None = None  # rolling radius [m], where the contact has a compliance of its own
+    profile: Profile | None = None  # of the wheel, over its position along the line: adds to the line's own
+    patch: float | None = None  # length over which it feels the mean of the line's profile [m]; None: a point
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -1,6 +1,7 @@
 """Sweeps on a real Dask scheduler, with workers in processes of their own on this machine."""
 
 import os
+import random
 import signal
 import socket
 import subprocess
@@ -120,23 +121,51 @@ def test_a_worker_that_is_killed(study, cluster, tmp_path, small_tasks):
     assert numbers_differ(reference, study.table()) < 1e-10
 
 
-def test_a_scheduler_that_is_killed_and_a_run_that_goes_on_without(study, cluster, tmp_path, small_tasks):
+def test_schedulers_that_are_killed_at_random_moments(study, tmp_path, small_tasks):
+    study.run(tmp_path / "here")
+    reference, folder, trial = study.table(), tmp_path / "there", study.trial(timed=False)
+    chosen, kept = random.Random(8), 0
+    for _ in range(3):
+        cluster = Cluster()
+        scheduler = cluster.scheduler()
+        cluster.worker()
+        last = kept + chosen.randrange(2, 7)
+
+        def kill(done, failed, total, scheduler=scheduler, last=last):
+            if done >= last and scheduler.poll() is None:
+                time.sleep(chosen.uniform(0.0, 0.05))  # somewhere within the tasks that follow
+                scheduler.send_signal(signal.SIGKILL)
+
+        try:
+            outcome = study.run(
+                folder, scheduler=cluster.address, progress=kill, resume=folder.exists(), trial=trial
+            )
+        finally:
+            cluster.end()
+        assert "the scheduler is gone" in outcome.reasons
+        assert len(study.table()) == 24 - outcome.missing >= last
+        kept = 24 - outcome.missing
+    assert kept < 24
+    assert study.run(folder, resume=True).computed == 24 - kept
+    assert numbers_differ(reference, study.table()) < 1e-10
+
+
+def test_a_scheduler_that_ends_while_it_is_asked(study, cluster, tmp_path, monkeypatch):
     scheduler = cluster.scheduler()
     cluster.worker()
-    study.run(tmp_path / "here")
-    reference = study.table()
+    count = on_dask._count
 
-    def kill(done, failed, total):
-        if done >= 6 and scheduler.poll() is None:
-            scheduler.send_signal(signal.SIGKILL)
+    def killed(client):
+        number = count(client)
+        scheduler.send_signal(signal.SIGKILL)
+        scheduler.wait(20)
+        return number
 
-    outcome = study.run(tmp_path / "there", scheduler=cluster.address, progress=kill)
-    assert 0 < outcome.missing < 24
-    assert "the scheduler is gone" in outcome.reasons
-    kept = len(study.table())
-    assert kept == 24 - outcome.missing
-    assert study.run(tmp_path / "there", resume=True).computed == outcome.missing
-    assert numbers_differ(reference, study.table()) < 1e-10
+    monkeypatch.setattr(on_dask, "_count", killed)
+    monkeypatch.setattr(on_dask, "PATIENCE", 4.0)
+    with pytest.raises(InputError, match=r"scheduler: is gone: it answered, and then closed the connection"):
+        study.run(tmp_path / "out", scheduler=cluster.address)
+    assert not (tmp_path / "out").exists()
 
 
 def test_a_scheduler_that_does_not_answer(study, tmp_path, monkeypatch):

@@ -43,11 +43,12 @@ class Envelope:
     speed: FloatArray  # (n,) [m/s], ascending
     value: FloatArray  # (n,) [unit of the quantity]
     id: npt.NDArray[np.int64]  # (n,) the scenario it comes from
+    lowest: bool = False  # whether the smallest value is the worst, as of a contact force
 
     @property
     def worst(self) -> int:
         """Where it is worst: the speed there is the critical one."""
-        return int(np.abs(self.value).argmax())
+        return int(self.value.argmin() if self.lowest else np.abs(self.value).argmax())
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,7 +145,7 @@ class Answers:
         rows = rows[np.lexsort((sign * values[rows], speeds[rows]))]
         first = np.flatnonzero(np.diff(speeds[rows], prepend=-np.inf) > 0.0)
         rows = rows[first]
-        return Envelope(speeds[rows], values[rows], np.asarray(self.columns["id"])[rows].astype(np.int64))
+        return Envelope(speeds[rows], values[rows], np.asarray(self.columns["id"])[rows].astype(np.int64), lowest)
 
     def critical(self, quantity: str) -> dict[str, tuple[float, float]]:
         """Critical speed [m/s] of each train, and what the quantity reaches there."""

@@ -192,9 +192,3 @@ def estimate(
     return Estimate(
         n, factors, batches, lanes, work / workers, n * (columns * _ROW + trial.kept), wide * trial.memory
     )
-
-
-def require_scenarios(number: int) -> None:
-    """Refuse what no study means [InputError]."""
-    if number > 10**9:
-        raise InputError(f"makes {number:.3g} scenarios; at most 1e9 are possible", field="vary")

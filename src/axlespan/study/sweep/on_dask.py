@@ -90,7 +90,7 @@ def on_dask(address: str, workers: int | None = None, patience: float | None = N
         If Dask is not installed, the scheduler does not answer, has no workers, or they differ from this program.
     """
     distributed, patience = _engine(), PATIENCE if patience is None else patience
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    _silence()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         cluster = None
@@ -112,6 +112,13 @@ def on_dask(address: str, workers: int | None = None, patience: float | None = N
             if cluster is not None:
                 with suppress(Exception):
                     cluster.close(timeout=5)
+
+
+def _silence() -> None:
+    """Keep what Dask logs off the terminal: its loggers have levels of their own, and tell of every lost connection."""
+    for name in ["distributed", *logging.root.manager.loggerDict]:
+        if name.partition(".")[0] == "distributed":
+            logging.getLogger(name).setLevel(logging.CRITICAL)
 
 
 def _engine() -> Any:
@@ -180,6 +187,9 @@ def _require_same(client: Any) -> None:
     try:
         there: dict[str, dict[str, str]] = client.run(versions)
     except Exception as error:
+        if isinstance(error, OSError) or client.status != "running":
+            rule = "is gone: it answered, and then closed the connection"
+            raise InputError(rule, field="scheduler", fix="Start it again, and look at what it wrote before it ended") from error
         words = " ".join(str(error).split())[:200] or type(error).__name__
         raise InputError(
             f"cannot use axlespan on a worker: {words}",

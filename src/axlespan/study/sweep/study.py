@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from functools import cached_property
+from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -37,6 +38,9 @@ from axlespan.study.yaml_tree import read_yaml
 
 if TYPE_CHECKING:
     import pandas
+
+#: Most scenarios of one study: all of them are counted, ordered and listed in memory.
+MOST_SCENARIOS = 10_000_000
 
 #: Called with the numbers of scenarios that are done, that failed, and of all.
 Progress = Callable[[int, int, int], None]
@@ -215,6 +219,7 @@ class Study:
     def _take(self, spec: Spec) -> None:
         self.spec = spec
         self._scenarios = Scenarios.of(spec)
+        _require_countable(spec)
         self._recipe = Recipe.of(spec)
         self._store: Store | None = None
         validate(self._recipe, self._scenarios, spec.source)
@@ -421,6 +426,16 @@ class Study:
     def __repr__(self) -> str:
         paths = ", ".join(f"{path} ({len(part)})" for path, part in zip_paths(self._scenarios))
         return f"Study: {len(self._scenarios)} scenarios; {paths}"
+
+
+def _require_countable(spec: Spec) -> None:
+    """Refuse products that no table holds."""
+    number = prod(len(axis) for axis in spec.axes)
+    if number > MOST_SCENARIOS:
+        factors = " × ".join(str(len(axis)) for axis in spec.axes)
+        rule = f"makes {number:.4g} scenarios ({factors}); at most {MOST_SCENARIOS:.0e} are possible"
+        fix = "Vary fewer paths, take longer steps, zip lists that belong together, or sample at random"
+        raise spec.source.blame_key(("vary",), rule, fix)
 
 
 def zip_paths(scenarios: Scenarios) -> Iterable[tuple[str, Any]]:
