@@ -51,7 +51,7 @@ class TestInit:
             ("--spans", "18 m, 24 m, 18 m", "--train", "hslm-a3", "--line-speed", "none"),
             ("--spans", "40 m", "--track", "ballasted", "--irregularity", "german-low"),
             ("--track", "slab", "--bridge-type", "steel", "--second-moment", "1.2 m^4"),
-            ("--train", "truck-2a3", "--speed", "80 km/h", "--spans", "12 m", "--damping", "2 %"),
+            ("--train", "truck-2a3", "--speed", "80 km/h", "--spans", "12 m", "--line-speed", "80 km/h"),
         ],
     )
     def test_other_wishes(self, written, words):
@@ -59,6 +59,20 @@ class TestInit:
         built = build(load_case(file))
         assert built.plan.settings.steps > 1000
         assert (built.loaded.case.assessment is None) == ("none" in words)
+
+    def test_a_truck_is_not_judged_by_the_rules_of_railways(self, written):
+        file, _ = written("--train", "truck-2a3", "--speed", "80 km/h", "--spans", "2 x 28 m, 35 m")
+        built = build(load_case(file))
+        assert built.loaded.case.assessment is None
+        assert [span.length for span in built.loaded.case.structure.spans] == [28.0, 28.0, 35.0]
+        text = file.read_text(encoding="utf-8")
+        assert "rail" not in text and "ballast" not in text and "german" not in text
+        assert "name: iso8608-b" in text
+
+    def test_spans_that_cannot_be(self, axlespan, tmp_path):
+        for spans, words in (("0 x 20 m", "must have 1 to 200 spans"), ("3 x 20 kg", "kg")):
+            answer = axlespan("init", tmp_path / "no.yaml", "--spans", spans)
+            assert answer.code == 2 and "--spans" in answer.err and words in answer.err
 
     def test_questions(self, tmp_path, monkeypatch):
         """What is not given is asked for, again after an answer that cannot be read."""

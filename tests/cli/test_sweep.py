@@ -105,6 +105,28 @@ def test_a_million_by_mistake(axlespan, path, tmp_path):
     assert "Add --yes if that is meant; axlespan check" in answer.err
 
 
+def test_a_study_is_no_case_and_a_case_no_study(axlespan, path, tmp_path):
+    answer = axlespan("run", path, "-o", tmp_path / "out")
+    assert answer.code == 2
+    says = f"is a study, not a case. Run it with: axlespan sweep {path} -o FOLDER\n"
+    assert answer.err == f"axlespan: {path}: {says}"
+    case = tmp_path / "case.yaml"
+    case.write_text("\n".join(line[2:] for line in STUDY.splitlines()[2:-2]))
+    assert axlespan("check", case).code == 0
+    answer = axlespan("sweep", case, "-o", tmp_path / "out")
+    assert answer.code == 2
+    assert f"{case}: is a case, not a study. axlespan run computes it" in answer.err
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["case.yaml", "study.yaml"]
+
+
+def test_one_scenario_does_not_go_into_a_store(axlespan, path, tmp_path):
+    out = tmp_path / "out"
+    assert axlespan("sweep", path, "-o", out, "--no-figures").code == 0
+    answer = axlespan("sweep", path, "-o", out, "--only", 1)
+    assert answer.code == 2
+    assert answer.err == f"axlespan: {out}: exists already and is not empty. Name another folder with -o\n"
+
+
 def test_products_that_no_table_holds(axlespan, path, tmp_path):
     many = "{from: 20, to: 30, count: 10000}"
     vary = f"{{crossing.speed: {many}, structure.length: {many}, structure.mass_per_length: {many}}}"

@@ -19,7 +19,7 @@ from axlespan.interaction.recorder import Recorder
 from axlespan.interaction.settings import settings_for
 from axlespan.interaction.simulate import simulate, simulate_many
 from axlespan.interaction.start import StartFactors
-from axlespan.irregularity import Harmonic
+from axlespan.irregularity import Harmonic, Table
 from axlespan.model.damping import Rayleigh
 from axlespan.vehicles.simple import axle_loads, rigid_body, rigid_mass, sprung_mass
 from axlespan.vehicles.train import Placement, Train
@@ -353,6 +353,40 @@ def test_a_wheel_that_hangs_at_the_start_is_said():
     assert wheel[0] > -60e-3  # it hangs on its spring, 300 kg on 3 MN/m lower than the seat
     first = result.checks["flights"][0]
     assert (first["contact"], first["start"], first["landed"]) == ("1.2", 0.0, True)
+
+
+@pytest.mark.parametrize("contact", ["hertz", "unilateral"])
+def test_a_wheel_in_the_air_at_the_start_does_not_pull(contact):
+    """Rounding of static equilibrium is no tension."""
+    car = rigid_body(
+        mass=3e4, pitch_inertia=1e5, axles=[0.0, 3.0, 6.0], stiffness=5e7, damping=1e5, unsprung_mass=500.0
+    )
+    hole = Table(np.array([-100.0, 6.5, 7.0, 8.0, 100.0]), np.array([0.0, 0.0, -0.02, 0.0, 0.0]))
+    crossing = Crossing(BRIDGE, Train.of(car), speed=20.0, start=10.0, irregularity=hole)
+    result = simulate(crossing, time_step=2e-4, steps=300, contact=contact)
+    assert result.contact_force[0, 1] == 0.0
+    assert result.contact_force.min() == 0.0
+    assert result.checks["tension_episodes"] == 0
+
+
+def test_landings_with_numerical_damping_lose_energy():
+    """A wheelset of 500 kg falls off a ramp onto the ground: what landings take is its kinetic energy, about."""
+    ramp = Table(np.array([-100.0, -3.0, -2.0, -1.9, 100.0]), np.array([0.0, 0.0, 0.03, 0.0, 0.0]))
+    crossing = Crossing(BRIDGE, Train.of(UNIT), speed=30.0, start=-5.0, irregularity=ramp)
+    result = simulate(crossing, time_step=5e-4, steps=400, contact="unilateral")
+    wheel = sum(0.5 * 500.0 * flight["closing_speed"] ** 2 for flight in result.checks["flights"])
+    assert result.facts["landing_loss"] == pytest.approx(wheel, rel=0.2)
+
+
+@pytest.mark.parametrize("contact", ["hertz", "unilateral", "linear-spring"])
+def test_laws_need_wheels_that_press(contact):
+    crossing = Crossing(BRIDGE, Train.of(UNIT), speed=20.0, irregularity=WAVES, gravity=0.0)
+    with pytest.raises(InputError, match=r"needs wheels that press on the line: .* contact 1\.1 is 0 N"):
+        simulate(crossing, time_step=1e-3, steps=10, contact=contact)
+    held = simulate(crossing, time_step=1e-3, steps=200)
+    assert held.outcome.code == "completed"
+    assert held.contact_force.min() < 0.0 < held.contact_force.max()
+    assert held.checks["force_noise"] == 0.0  # no static force to relate it to
 
 
 def test_a_lost_vehicle_stops_the_run():

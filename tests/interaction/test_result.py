@@ -1,6 +1,7 @@
 """What a result holds, how it is asked for, and what it says about the run."""
 
 import re
+import sys
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from axlespan.bridges.spans import SupportAt, simple_span
 from axlespan.dynamics.alpha import Alpha
 from axlespan.errors import InputError
 from axlespan.interaction.crossing import Crossing
+from axlespan.interaction.result import VARIABLES
 from axlespan.interaction.simulate import simulate
 from axlespan.linalg.factor import available
 from axlespan.vehicles.simple import axle_loads, rigid_body
@@ -139,3 +141,20 @@ def test_without_sensors_vehicles_or_supports_that_move():
     assert result.support == ("support1.z", "support2.z")
     assert "100 to 100 kN, 1 wheels" in repr(result)
     assert re.search(r"midspan +displacement -", repr(WHOLE))
+
+
+def test_to_pandas():
+    table = WHOLE.to_pandas()
+    assert table.index.name == "time" and table.columns.names == ["quantity", "name"]
+    np.testing.assert_array_equal(table.index, WHOLE.time)
+    assert list(table["contact_force"].columns) == list(WHOLE.contact)
+    for quantity, (dimension, unit, _) in VARIABLES.items():
+        assert table.attrs["units"][quantity] == unit
+        for name in getattr(WHOLE, dimension):
+            np.testing.assert_array_equal(table[quantity, name], WHOLE.at(quantity, name))
+
+
+def test_to_pandas_without_pandas(monkeypatch):
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(InputError, match=r"pandas: is not installed. pip install 'axlespan\[xarray\]'"):
+        WHOLE.to_pandas()

@@ -6,6 +6,7 @@ import base64
 import hashlib
 import json
 import re
+import shutil
 import time
 import zlib
 from dataclasses import replace
@@ -126,11 +127,20 @@ def test_verdicts_show_how_much_is_used():
     ]  # fmt: skip
     table = verdict_table({"verdicts": rows})
     text = text_of(table)
-    assert "deck acceleration EN 1990 A2.4.4.2.1 2.800 m/s² 3.500 m/s² 80 % midspan, 1.250 s ✓ passed" in text
+    assert "deck acceleration* EN 1990 A2.4.4.2.1 2.800 m/s² 3.500 m/s² 80 % midspan, 1.250 s ✓ passed" in text
     assert "twist one rail only EN 1990 A2.4.4.2.2 – – –" in text and "– not assessed" in text
     assert "&lt;Q/Q0&gt;" in table and "150 %" in text and "✗ failed" in text
     assert 'class="bar over"' in table and "width:80.0%" in table
+    # what fails comes first, what was not assessed last; numbers that nobody has checked are marked
+    assert text.index("unloading") < text.index("deck acceleration*") < text.index("twist one rail only")
+    assert "* Numbers of the standard from memory: check against the standard" in text
+    assert "from memory" not in verdict_table({"verdicts": rows[1:]})
     assert verdict_table({}) == ""
+
+
+def test_speeds_of_trains_are_in_km_h():
+    row = {"quantity": "resonance speed", "value": 80.785, "limit": None, "unit": "m/s", "outcome": "reported"}
+    assert "resonance speed 290.8 km/h – – i reported" in text_of(verdict_table({"verdicts": [row]}))
 
 
 # --- folders that are spoiled ----------------------------------------------------------------------
@@ -314,3 +324,43 @@ def test_libraries_are_the_published_ones():
         assert hashlib.sha256(vendor.joinpath(*name.split("/")).read_bytes()).hexdigest() == digest, name
     for name in ("uplot", "three"):
         assert "MIT" in (vendor / name / "LICENSE").read_text(encoding="utf-8")
+
+
+def test_values_that_are_no_numbers(copy):
+    """Without a summary the tables are made from what is there."""
+    with h5py.File(copy / "result.nc", "r+") as file:
+        for name in ("sensor_displacement", "contact_force", "vehicle_acceleration"):
+            file[name][300:400] = np.nan
+            file[name][700] = np.inf
+    assert report(copy)[0] == 0
+    (copy / "summary.json").unlink()
+    code, _, said = report(copy)
+    assert code == 0 and "There is no summary.json" in said  # told at the terminal too
+    text = text_of((copy / "report.html").read_text(encoding="utf-8"))
+    assert "Extremes of the contact forces" in text and not re.search(r"\bnan\b", text)
+
+
+def test_a_summary_of_a_later_version_is_left_out(copy):
+    content = json.loads((copy / "summary.json").read_text(encoding="utf-8"))
+    content |= {"format_version": 2, "version": "9.1", "verdict": "of another kind"}
+    (copy / "summary.json").write_text(json.dumps(content), encoding="utf-8")
+    code, _, said = report(copy)
+    assert code == 0 and "summary.json was written by axlespan 9.1, later than this one" in said
+    assert "There is no summary.json" not in said
+    assert "−2.407" in text_of((copy / "report.html").read_text(encoding="utf-8"))
+
+
+def test_what_only_the_file_knows_is_not_guessed(train, tmp_path):
+    """The running line may be longer than the bridge: without the file no length and no drawing."""
+    shutil.copy(train / "summary.json", tmp_path)
+    page = result_page(tmp_path)
+    text = text_of(page)
+    assert "crosses a structure (simple span)" in text and '<svg class="sketch"' not in page
+
+
+def test_titles_are_cut_where_nobody_reads_on(copy):
+    content = json.loads((copy / "summary.json").read_text(encoding="utf-8"))
+    content["run"]["title"] = "<b>long</b> " * 100
+    (copy / "summary.json").write_text(json.dumps(content), encoding="utf-8")
+    (title,) = re.findall(r"<h1>(.*?)</h1>", result_page(copy), flags=re.DOTALL)
+    assert title.startswith("&lt;b&gt;long&lt;/b&gt; ") and title.endswith("…") and title.count("long") == 13

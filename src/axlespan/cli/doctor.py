@@ -40,7 +40,7 @@ PARTS = (
     Part("numba", "numba", "compiled loops, many crossings at once", "numba"),
     Part("meshlane", "meshlane", "more mesh formats", "mesh"),
     Part("xarray", "xarray", "Result.to_xarray", "xarray"),
-    Part("pandas", "pandas", "tables of studies", "study"),
+    Part("pandas", "pandas", "tables of results and studies", "study"),
     Part("pyarrow", "pyarrow", "stores of studies", "study"),
     Part("distributed", "distributed", "studies on a cluster", "dask"),
 )

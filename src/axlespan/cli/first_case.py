@@ -29,6 +29,7 @@ class Wishes:
     line_speed: float | None  # [m/s]; None: no verdicts
     irregularity: str  # none, or a spectrum
     has_masses: bool  # whether the train is more than forces
+    is_road: bool = False  # whether it runs on a road: no rails, no rules of railways
 
 
 def usual_frequency(span: float) -> float:
@@ -95,11 +96,13 @@ def _structure(wishes: Wishes) -> list[str]:
         *where,
         f"  youngs_modulus: {modulus}",
         f"  second_moment: {second_moment:.4g} m^4{origin}",
-        f"  mass_per_length: {wishes.mass_per_length / 1e3:g} t/m  # with ballast, rails and all that stays",
+        f"  mass_per_length: {wishes.mass_per_length / 1e3:g} t/m  # with {'pavement' if wishes.is_road else 'ballast, rails'} and all that stays",
         f"  elements: {elements}{'' if single else '  # in each span'}",
         f"  damping: {{kind: rayleigh, ratio: {100.0 * wishes.damping:g} %, frequencies: "
         f"[{frequency:.3g} Hz, {4.0 * frequency:.3g} Hz]}}",
     ]
+    if wishes.track == "none" and wishes.is_road:
+        return lines
     if wishes.track == "none":
         return [
             *lines,
@@ -121,7 +124,8 @@ def _crossing(wishes: Wishes) -> list[str]:
     if wishes.track != "none":
         lines.append("  start: -15 m  # before the bridge, where rails that do not move at first do no harm")
     if wishes.irregularity == "none":
-        return [*lines, "  # irregularity: {kind: spectrum, name: german-low, seed: 1}"]
+        usual = "iso8608-b" if wishes.is_road else "german-low"
+        return [*lines, f"  # irregularity: {{kind: spectrum, name: {usual}, seed: 1}}"]
     return [*lines, f"  irregularity: {{kind: spectrum, name: {wishes.irregularity}, seed: 1}}"]
 
 
@@ -152,6 +156,8 @@ def _output(wishes: Wishes) -> list[str]:
 
 
 def _assessment(wishes: Wishes) -> list[str]:
+    if wishes.line_speed is None and wishes.is_road:
+        return []
     if wishes.line_speed is None:
         return [
             "",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -33,6 +34,7 @@ from axlespan.vehicles import library, load_trains
 T = TypeVar("T")
 
 TRACKS = ("none", "ballasted", "slab")
+_MOST_SPANS = 200
 
 
 @dataclass(frozen=True)
@@ -110,7 +112,7 @@ def _wishes(options: Options, asks: bool) -> Wishes:
     irregularity = _value(
         "irregularity",
         options.irregularity,
-        "Irregularity (none, german-low, ...)",
+        f"Irregularity (none, {'iso8608-b' if _is_road(train) else 'german-low'}, ...)",
         "none",
         _word("irregularity", ("none", *spectrum_names())),
         asks,
@@ -118,8 +120,8 @@ def _wishes(options: Options, asks: bool) -> Wishes:
     line_speed = _value(
         "line-speed",
         options.line_speed,
-        "Line speed for the verdicts of the code, or none",
-        show(speed, SPEED),
+        "Line speed for the verdicts of the railway code, or none",
+        "none" if _is_road(train) else show(speed, SPEED),
         lambda text: None if text.strip() == "none" else _of(SPEED)(text),
         asks,
     )
@@ -138,6 +140,7 @@ def _wishes(options: Options, asks: bool) -> Wishes:
         line_speed,
         irregularity,
         has_masses,
+        _is_road(train),
     )
 
 
@@ -184,7 +187,13 @@ def _spans(text: str) -> tuple[float, ...]:
     parts = [part for part in text.replace(";", ",").split(",") if part.strip()]
     if not parts:
         raise InputError("must be a length, or several with commas between", value=text, fix="Write 25 m")
-    return tuple(_of(LENGTH)(part.strip()) for part in parts)
+    spans: list[float] = []
+    for part in parts:
+        times, sign, length = re.sub(r"^\s*(\d+)\s*[x×*]\s*(?=\d)", r"\1×", part).partition("×")
+        if sign and not 1 <= int(times) <= _MOST_SPANS:
+            raise InputError(f"must have 1 to {_MOST_SPANS} spans", value=text)
+        spans += [_of(LENGTH)((length if sign else part).strip())] * (int(times) if sign else 1)
+    return tuple(spans)
 
 
 def _word(what: str, words: tuple[str, ...]) -> Callable[[str], str]:
@@ -198,6 +207,11 @@ def _word(what: str, words: tuple[str, ...]) -> Callable[[str], str]:
 
 def _train_name(text: str) -> str:
     return _word("name in the library", (*library.names(), *load_trains.names()))(text)
+
+
+def _is_road(name: str) -> bool:
+    """Whether it is a road vehicle, which the rules of railways do not judge."""
+    return name in library.names() and library.entry(name).group == "road"
 
 
 def _train_facts(name: str) -> tuple[float, bool]:

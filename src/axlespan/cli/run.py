@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import warnings
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -11,7 +12,7 @@ from axlespan.cli.folder import check_folder, publish, staged
 from axlespan.cli.messages import DONE, FAILED, INTERRUPTED, refuse, say, warn
 from axlespan.cli.progress import Steps, progress
 from axlespan.cli.room import check_size
-from axlespan.errors import AnalysisError, AxlespanError, InputError
+from axlespan.errors import AnalysisError, AxlespanError, InputError, Place
 from axlespan.interaction.result import Result
 from axlespan.interaction.simulate import run_plan
 from axlespan.io.drawing import drawing_of
@@ -22,6 +23,7 @@ from axlespan.irregularity import spectrum_names
 from axlespan.standards import assess
 from axlespan.study.build import BuiltCase, build
 from axlespan.study.loader import load_case
+from axlespan.study.sweep.spec import is_study_file
 
 # Fields for ParaView where a case asks for none.
 _FIELDS = 100
@@ -41,6 +43,9 @@ class Wanted:
 def run_case(case: Path, output: Path | None, *, force: bool, wanted: Wanted) -> int:
     """Run a case; the exit code."""
     try:
+        if is_study_file(case):
+            fix = f"Run it with: axlespan sweep {shlex.quote(str(case))} -o FOLDER"
+            raise InputError("is a study, not a case", place=Place(str(case)), fix=fix)
         loaded = load_case(case, spectra=spectrum_names())
         folder = output or _folder_of(case)
         check_folder(folder, force)

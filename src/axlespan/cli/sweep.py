@@ -196,7 +196,7 @@ def _draw(answers: Answers, folder: Path) -> None:
 def _run_one(study: Study, number: int, folder: Path) -> int:
     """Compute one scenario alone, with all its histories."""
     scenario = study.scenario(number)
-    check_folder(folder, force=False)
+    _require_other_folder(folder)
     with staged(folder) as stage:
         try:
             result = run_plan(scenario.built.plan)
@@ -214,6 +214,16 @@ def _run_one(study: Study, number: int, folder: Path) -> int:
     for line in lines:
         say(line)
     return DONE if result.outcome.code == "completed" else FAILED
+
+
+def _require_other_folder(folder: Path) -> None:
+    """Require a folder that is new or empty: a store is of all scenarios."""
+    try:
+        check_folder(folder, force=False)
+    except InputError as error:
+        if folder.is_dir():
+            error = InputError(error.rule, place=error.place, fix="Name another folder with -o")
+        raise error from None
 
 
 def _write_one(study: Study, scenario: Scenario, result: Result, stage: Path, folder: Path) -> list[str]:

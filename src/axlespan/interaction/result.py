@@ -16,6 +16,7 @@ from axlespan.interaction.extras import SECTION_VARIABLES, extra_coordinates, ex
 from axlespan.interaction.fields import Fields
 
 if TYPE_CHECKING:
+    import pandas
     import xarray
 
 FloatArray = npt.NDArray[np.float64]
@@ -144,6 +145,38 @@ class Result(Shown):
         return xr.Dataset(
             variables, coordinates, {"outcome": self.outcome.code, "outcome_message": self.outcome.message}
         )
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The histories as a pandas DataFrame: a row for each time, a column for each history.
+
+        Returns
+        -------
+        DataFrame (n_time, n_history)
+            The index is ``time`` [s]. Columns have two levels, quantity and name: ``table["contact_force"]``
+            is a table of all wheels, ``table["contact_force", "1.1"]`` one history. ``table.attrs["units"]``
+            has the unit of each quantity.
+
+        Raises
+        ------
+        InputError
+            If pandas is not installed.
+        """
+        try:
+            import pandas as pd
+        except ImportError as error:
+            raise InputError(
+                "is not installed", field="pandas", fix="pip install 'axlespan[xarray]'"
+            ) from error
+        known = {name: row for name, row in (VARIABLES | SECTION_VARIABLES).items() if getattr(self, row[0])}
+        columns = [(name, each) for name, (dimension, *_) in known.items() for each in getattr(self, dimension)]
+        values = [getattr(self, name) for name in known]
+        table = pd.DataFrame(
+            np.hstack(values) if values else np.empty((len(self.time), 0)),
+            index=pd.Index(self.time, name="time"),
+            columns=pd.MultiIndex.from_tuples(columns, names=["quantity", "name"]),
+        )
+        table.attrs["units"] = {"time": "s"} | {name: unit for name, (_, unit, _) in known.items()}
+        return table
 
     def card(self) -> Card:
         """Return what is shown of it."""

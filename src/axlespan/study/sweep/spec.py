@@ -115,6 +115,9 @@ def is_study_file(path: str | os.PathLike[str]) -> bool:
 
 def read_spec(root: Node, folder: Path, library: Sequence[str] = ()) -> Spec:
     """Read the data of a study file; ``folder`` is where it stands."""
+    if isinstance(root.data, Mapping) and "structure" in root.data and not is_study(root.data):
+        fix = f"axlespan run computes it; a study has base: {Path(root.source.file).name} and {_VARY}"
+        raise InputError("is a case, not a study", place=Place(root.source.file), fix=fix)
     parts = root.keys(KEYS, f"base: case.yaml and {_VARY}")
     for key, fix in (("base", "Add base: case.yaml, or a whole case"), ("vary", f"Add {_VARY}")):
         if key not in parts:
