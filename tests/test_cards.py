@@ -81,3 +81,23 @@ def test_long_lists_are_cut():
     assert some(["a", "b"]) == "a, b"
     assert some([]) == "none"
     assert some([str(i) for i in range(9)]) == "0, 1, 2, 3, 4, 5, … (9)"
+
+
+def test_a_study_and_its_next_steps(tmp_path):
+    case = {
+        "structure": {"kind": "simple-span", "length": 25, "youngs_modulus": "2.87 GPa",
+                      "second_moment": "2.9 m^4", "mass_per_length": 2303, "elements": 10},
+        "train": [{"vehicle": "axle-loads", "loads": "100 kN"}],
+        "crossing": {"speed": "80 km/h"},
+        "analysis": {"time_step": "10 ms"},
+    }  # fmt: skip
+    study = asp.Study(
+        case, {"crossing.speed": ["80 km/h", "90 km/h"]}, passage={"after": "1 s"}, title="<Two>"
+    )
+    assert "scenarios  2" in repr(study) and "crossing.speed (2)" in repr(study)
+    assert "&lt;Two&gt;" in study._repr_html_()
+    (line,) = re.findall(r"next: (.*)", repr(study))
+    assert line == 'study.run("folder")'
+    study.run(tmp_path / "folder")
+    assert "next: study.table(), study.answers()" in repr(study)
+    assert len(study.table()) == 2

@@ -137,7 +137,9 @@ class TestUsage:
         answer = axlespan(option)
         assert (answer.code, answer.err) == (0, "")
         listed = re.findall(r"^  (\w+) {2,}(.*)$", answer.out.split("Commands:")[1], re.M)
-        assert {"run", "sweep", "check", "modes", "examples", "schema", "verify"} <= {name for name, _ in listed}
+        assert {"run", "sweep", "check", "modes", "examples", "schema", "verify"} <= {
+            name for name, _ in listed
+        }
         assert all(text.endswith(".") and not text.endswith("..") for _, text in listed), "no line is cut off"
 
     @pytest.mark.parametrize("command", ["run", "sweep", "check", "modes", "examples", "schema", "verify"])

@@ -127,7 +127,9 @@ def test_verdicts_show_how_much_is_used():
     ]  # fmt: skip
     table = verdict_table({"verdicts": rows})
     text = text_of(table)
-    assert "deck acceleration* EN 1990 A2.4.4.2.1 2.800 m/s² 3.500 m/s² 80 % midspan, 1.250 s ✓ passed" in text
+    assert (
+        "deck acceleration* EN 1990 A2.4.4.2.1 2.800 m/s² 3.500 m/s² 80 % midspan, 1.250 s ✓ passed" in text
+    )
     assert "twist one rail only EN 1990 A2.4.4.2.2 – – –" in text and "– not assessed" in text
     assert "&lt;Q/Q0&gt;" in table and "150 %" in text and "✗ failed" in text
     assert 'class="bar over"' in table and "width:80.0%" in table
@@ -139,7 +141,13 @@ def test_verdicts_show_how_much_is_used():
 
 
 def test_speeds_of_trains_are_in_km_h():
-    row = {"quantity": "resonance speed", "value": 80.785, "limit": None, "unit": "m/s", "outcome": "reported"}
+    row = {
+        "quantity": "resonance speed",
+        "value": 80.785,
+        "limit": None,
+        "unit": "m/s",
+        "outcome": "reported",
+    }
     assert "resonance speed 290.8 km/h – – i reported" in text_of(verdict_table({"verdicts": [row]}))
 
 

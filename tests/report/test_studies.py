@@ -16,6 +16,7 @@ from tests.report.test_pages import content_of, report, text_of
 
 from axlespan.report import result_page, write_report
 from axlespan.study.sweep import Answers, Study
+from axlespan.study.sweep.answers import Envelope
 from axlespan.study.sweep.store import Store
 
 STUDY = """\
@@ -176,3 +177,11 @@ def test_fifty_thousand_scenarios(tmp_path, read):
     assert reader.page.inner_text("#scenario-table p[role=status]") == "1 to 100 of 50000 scenarios"
     reader.page.click("#scenario-table button:has-text('12345')")
     assert "The study keeps no histories" in reader.page.inner_text("#scenario-plots")
+
+
+def test_the_worst_of_a_smallest_value_is_the_smallest():
+    """Of contact forces of 40, 55 and 50 kN the first unloads most; of deflections the lowest counts."""
+    speed, id = np.array([10.0, 20.0, 30.0]), np.arange(3)
+    assert Envelope(speed, np.array([40e3, 55e3, 50e3]), id, lowest=True).worst == 0
+    assert Envelope(speed, np.array([-1e-3, -3e-3, 0.0]), id, lowest=True).worst == 1
+    assert Envelope(speed, np.array([1.0, -3.0, 2.0]), id).worst == 1

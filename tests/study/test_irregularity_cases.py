@@ -28,7 +28,9 @@ MEASURED = ir.Measurement.from_points(LONG, RECORD).detrended(2)
 
 KINDS = {
     "{kind: bump, at: 6 m, height: -5 mm, length: 2 m}": BUMP,
-    "{kind: bump, at: 6 m, height: 5 mm, length: 2 m, shape: half-sine}": ir.Bump(6.0, 5e-3, 2.0, "half-sine"),
+    "{kind: bump, at: 6 m, height: 5 mm, length: 2 m, shape: half-sine}": ir.Bump(
+        6.0, 5e-3, 2.0, "half-sine"
+    ),
     "{kind: ramp, from: -1 m, to: 3 m, height: 4 mm}": ir.Ramp(-1.0, 3.0, 4e-3),
     "{kind: ramp, from: -1 m, to: 3 m, height: -4 mm, shape: cosine}": ir.Ramp(-1.0, 3.0, -4e-3, "cosine"),
     "{kind: dipped-joint, at: 5 m, depth: 2 mm, length: 1 m}": JOINT,
@@ -91,7 +93,11 @@ def test_heights_of_some_places(folder):
         "{kind: bump, at: 6 m, height: 5 mm, length: 2 m}": {5.0: 0.0, 6.0: 5e-3, 5.5: 2.5e-3},
         "{kind: ramp, from: -1 m, to: 3 m, height: 4 mm}": {-1.0: 0.0, 1.0: 2e-3, 3.0: 4e-3, 20.0: 4e-3},
         "{kind: dipped-joint, at: 5 m, depth: 2 mm, length: 1 m}": {4.5: 0.0, 5.0: -2e-3, 5.25: -5e-4},
-        "{kind: pothole, at: 4 m, depth: 20 mm, length: 2 m, edge: 0.5 m}": {3.25: -0.01, 4.4: -0.02, 5.1: 0.0},
+        "{kind: pothole, at: 4 m, depth: 20 mm, length: 2 m, edge: 0.5 m}": {
+            3.25: -0.01,
+            4.4: -0.02,
+            5.1: 0.0,
+        },
         "{kind: settlement, at: 0 m, depth: 20 mm, inflection: 3 m}": {3.0: -0.02 * np.exp(-0.5)},
     }
     for words, places in heights.items():

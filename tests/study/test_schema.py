@@ -98,6 +98,13 @@ WRONG = [
     ("reactions", "reaction"),
     ("midspan: 12.5 m", "midspan: [12.5 m]"),
     ("output:", "output:\n  envelopes: [displacement]"),
+    ("80 km/h", "80 km/h\n  irregularity: {kind: sum, of: []}"),
+    ("80 km/h", "80 km/h\n  irregularity: {kind: sum, of: [{kind: sum, of: [none]}]}"),
+    ("80 km/h", "80 km/h\n  irregularity: {kind: lines, lines: {}}"),
+    ("80 km/h", "80 km/h\n  irregularity: {kind: squat, at: 1, depth: 0, length: 40 mm}"),
+    ("80 km/h", "80 km/h\n  irregularity: {kind: table, points: [[0, 0], [1, 0]], band: D4}"),
+    ("count: 3", "count: 3\n    out_of_round: {order: 3}"),
+    ("count: 3", "count: 3\n    wheel_flat: {length: 50 mm, wheels: []}"),
 ]
 
 

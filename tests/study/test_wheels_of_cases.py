@@ -69,7 +69,7 @@ def test_a_flat_strikes_at_the_frequency_of_revolution():
     turn = 2.0 * np.pi * RADIUS
     away = np.abs((x[at] + 40.0 + 0.5 * turn) % turn - 0.5 * turn)
     assert len(at) > 10
-    assert away.max() < 0.12
+    assert away.max() < 0.2  # half of the flat, and the ringing of five steps; half a turn is 1.4 m
 
 
 def test_profiles_of_wheels():
@@ -86,7 +86,9 @@ def test_profiles_of_wheels():
 
 
 def test_a_patch_feels_the_mean():
-    case = built("contact_patch: 0.24 m", "{kind: pothole, at: -20 m, depth: 30 mm, length: 1 m, edge: 100 mm}")
+    case = built(
+        "contact_patch: 0.24 m", "{kind: pothole, at: -20 m, depth: 30 mm, length: 1 m, edge: 100 mm}"
+    )
     hole = ir.Pothole(-20.0, 0.03, 1.0, 0.1)
     x = np.linspace(-22.0, -18.0, 801)
     point, mean = (case.crossing.runs[0].profiles[i].value(x) for i in (0, 2))
@@ -114,7 +116,8 @@ def test_python_is_the_same():
 def test_wheels_of_another_train_count_on():
     other = """\
 other_trains:
-  - {train: [{vehicle: rigid-mass, mass: 5 t, wheel_flat: {length: 50 mm, radius: 0.46, wheels: [4.1]}}], speed: 20, start: -69.5 m}
+  - {train: [{vehicle: rigid-mass, mass: 5 t, wheel_flat: {length: 50 mm, radius: 0.46, wheels: [4.1]}}],
+     speed: 20, start: -69.5 m}
 """
     text = CASE.replace("OWN", "").replace("IRREGULARITY", "none") + other
     runs = build(read_case(text)).crossing.runs
@@ -140,7 +143,10 @@ def test_the_switch_to_axle_loads_is_believed():
             "wheel_flat: {length: 50 mm}",
             "train.1.wheel_flat.radius: is missing: the vehicle does not know it. Add radius: 460 mm",
         ),
-        ("wheel_flat: {radius: 460 mm}", "train.1.wheel_flat.length: is missing. Add length: 50 mm, or depth: 0.5 mm"),
+        (
+            "wheel_flat: {radius: 460 mm}",
+            "train.1.wheel_flat.length: is missing. Add length: 50 mm, or depth: 0.5 mm",
+        ),
         (
             "wheel_flat: {length: 0.45 m, radius: 0.12}",
             "train.1.wheel_flat.length = 0.45 m: must be less than half the circumference, 0.376991 m",
@@ -166,5 +172,53 @@ def test_wrong_wheels(own, said):
 
 
 def test_forces_feel_no_surface():
-    with pytest.raises(InputError, match="train.0.contact_patch = 24 cm: has no effect: these are moving forces"):
+    with pytest.raises(
+        InputError, match=r"train\.0\.contact_patch = 24 cm: has no effect: these are moving forces"
+    ):
         built(**{"rigid-mass,_mass:_5_t": "axle-loads, loads: 50 kN, contact_patch: 24 cm"})
+
+
+def test_steps_that_pass_over_a_flat():
+    """20 m/s and 1 ms are 20 mm a step: five of them on a flat of 100 mm are enough, two of 40 mm are not."""
+    flat = "wheel_flat: {length: 100 mm, radius: 0.46, wheels: [3.1]}"
+    assert built(flat).cautions == ()
+    squat = "{kind: squat, at: 3 m, depth: 0.3 mm, length: 60 mm}"
+    assert built(flat.replace("100", "40"), squat).cautions == (
+        "a wheel moves 20 mm in a time step, too much to see a wheel flat of 40 mm; 0.0002 s would show it",
+        "a wheel moves 20 mm in a time step, too much to see a squat of 60 mm; 0.0003 s would show it",
+    )
+    patch = built("contact_patch: 0.2 m", squat, **{"rigid-mass,_mass:_5_t": "axle-loads, loads: 50 kN"})
+    assert patch.cautions == ()
+
+
+WAGON = """\
+title: Wagon
+sources: {sheet: Data sheet}
+source: sheet
+bodies: [{name: body, mass: 28 t, inertia: 300 t m^2, position: 3.25 m}]
+wheels: [{mass: 1.3 t, radius: 0.46 m, positions: [0 m, 6.5 m]}]
+suspensions: [{between: [[body, wheel1], [body, wheel2]], stiffness: 2.4 MN/m, damping: 30 kNs/m}]
+stated: {total_mass: 30.6 t, axle_loads: 150.1 kN, frequencies: [2.1 Hz], tolerance: 1 %}
+"""
+
+
+def test_a_vehicle_file_that_contradicts_itself(tmp_path):
+    """Its mass is 28 + 2 · 1.3 t, f = √(2 · 2.4e6 / 28e3) / 2π; what it states otherwise is told in the run."""
+    case = CASE.replace("IRREGULARITY", "none").replace("OWN", "")
+    case = case.replace(
+        "vehicle: rigid-mass, mass: 5 t, count: 2, spacing: 3 m",
+        "vehicle: wagon.yaml, wheel_flat: {length: 90 mm}",
+    )
+    (tmp_path / "wagon.yaml").write_text(WAGON, encoding="utf-8")
+    made = build(read_case(case, folder=tmp_path))
+    assert made.cautions == ()
+    assert made.crossing.runs[0].profiles[0].wheel_radius == 0.46
+    wrong = WAGON.replace("30.6 t", "33 t").replace("150.1", "160").replace("2.1 Hz", "3.3 Hz")
+    (tmp_path / "wagon.yaml").write_text(wrong, encoding="utf-8")
+    place = "case.yaml:3:15: train.0.vehicle = wagon.yaml: "
+    fix = ". Correct the one or the other"
+    assert build(read_case(case, folder=tmp_path)).cautions == (
+        f"{place}states a total mass of 33 t, but its parts have 30.6 t{fix}",
+        f"{place}states 160 kN on axle 1, but its parts put 150.1 kN there{fix}",
+        f"{place}states a frequency of 3.3 Hz, but the nearest that it has is 2.084 Hz{fix}",
+    )

@@ -207,7 +207,9 @@ def verify(
 @app.command()
 def init(
     file: Annotated[Path, typer.Argument(help="File to write.")] = Path("case.yaml"),
-    spans: Annotated[str | None, typer.Option(help="Span, or spans: '40 m', '18 m, 24 m, 18 m' or '3 x 25 m'.")] = None,
+    spans: Annotated[
+        str | None, typer.Option(help="Span, or spans: '40 m', '18 m, 24 m, 18 m' or '3 x 25 m'.")
+    ] = None,
     bridge_type: Annotated[str | None, typer.Option(help="prestressed-concrete, steel, ...")] = None,
     mass_per_length: Annotated[str | None, typer.Option(help="With all that stays on it: '15 t/m'.")] = None,
     frequency: Annotated[

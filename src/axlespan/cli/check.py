@@ -134,7 +134,8 @@ def _listed(loads: npt.NDArray[np.float64]) -> str:
 
 
 def _vehicle_lines(built: BuiltCase) -> list[str]:
-    kinds: dict[int, Vehicle] = {id(item.vehicle): item.vehicle for item in built.crossing.placements}
+    placed = [item.vehicle for item in built.crossing.placements]
+    kinds: dict[int, Vehicle] = {id(one.system or one): one for one in placed}  # whatever flats they have
     lines = []
     for vehicle in kinds.values():
         loads = vehicle.static_forces(built.crossing.gravity) / 1e3

@@ -109,7 +109,9 @@ def _speed() -> bool:
 
     for _, matrix in _matrices():  # what is compiled or loaded at the first call is not speed
         _times(matrix, str(choose(matrix)))
-    say(f"solvers     {', '.join(available())}; chosen for each matrix, `axlespan check CASE` says which and why")
+    say(
+        f"solvers     {', '.join(available())}; chosen for each matrix, `axlespan check CASE` says which and why"
+    )
     for name, matrix in _matrices():
         choice = choose(matrix)
         factor_time, solve_time = _times(matrix, str(choice))
@@ -157,7 +159,9 @@ def _example() -> bool:
     from axlespan.verification.book import run, select
 
     (report,) = run(select("neves-3.1"))
-    say(f"check       N12's example 3.1 against its semi-analytical solution: {'ok' if report.ok else 'WRONG'}")
+    say(
+        f"check       N12's example 3.1 against its semi-analytical solution: {'ok' if report.ok else 'WRONG'}"
+    )
     for row in report.rows:
         if not row.ok:
             say(f"{'':<12}{row.quantity}: {row.obtained:.6g} {row.unit}, expected {row.expected:.6g}")

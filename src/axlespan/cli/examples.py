@@ -10,7 +10,6 @@ from axlespan.cli.messages import DONE, refuse, say
 from axlespan.errors import InputError, Place
 from axlespan.model.dofs import nearest
 
-
 _STUDY = "study-"  # beginning of the names of studies
 
 

@@ -88,6 +88,7 @@ def _structure(wishes: Wishes) -> list[str]:
         if single
         else ["  spans:", *(f"    - {{length: {span:g} m}}" for span in wishes.spans)]
     )
+    on_it = "pavement" if wishes.is_road else "ballast, rails"
     elements = max(20, math.ceil(longest)) if single else max(12, math.ceil(longest / 2.0))
     lines = [
         "",
@@ -96,7 +97,7 @@ def _structure(wishes: Wishes) -> list[str]:
         *where,
         f"  youngs_modulus: {modulus}",
         f"  second_moment: {second_moment:.4g} m^4{origin}",
-        f"  mass_per_length: {wishes.mass_per_length / 1e3:g} t/m  # with {'pavement' if wishes.is_road else 'ballast, rails'} and all that stays",
+        f"  mass_per_length: {wishes.mass_per_length / 1e3:g} t/m  # with {on_it} and all that stays",
         f"  elements: {elements}{'' if single else '  # in each span'}",
         f"  damping: {{kind: rayleigh, ratio: {100.0 * wishes.damping:g} %, frequencies: "
         f"[{frequency:.3g} Hz, {4.0 * frequency:.3g} Hz]}}",

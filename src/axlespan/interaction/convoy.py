@@ -215,8 +215,9 @@ def _drive(
         return convoy, None if leaper is None else leaper(convoy)
 
     convoy, leap = formed(lanes)
-    for lane in lanes:
-        lane.recorder.begin(lane.structure, lane.fleet, lane.forces, lane.load)
+    for i, lane in enumerate(lanes):
+        # As the body holds it: a reduced basis has not all of a start in all d.o.f.
+        lane.recorder.begin(convoy.structure.full(i), lane.fleet, lane.forces, lane.load)
     while True:
         stretch = convoy.stretch(systems=systems)
         failed = _make(convoy, stretch, couple, leap)

@@ -15,6 +15,7 @@ from axlespan.dynamics.integrator import Matrices
 from axlespan.elements.beam_sections import QUANTITIES
 from axlespan.errors import InputError
 from axlespan.interaction.crossing import Crossing
+from axlespan.interaction.defect_notes import defect_notes
 from axlespan.interaction.forces import AppliedForces
 from axlespan.interaction.nonlinear_laws import laws_of, require_direct
 from axlespan.interaction.sensors import by_line, check_sensors, sensor_rows
@@ -131,6 +132,7 @@ def plan_for(crossing: Crossing, settings: Settings) -> Plan:
     _check_reach(plan)
     end = settings.time_step * settings.steps
     notes = [*require_clear_tracks(crossing, end), *surface_notes(crossing, end), *start_notes(crossing)]
+    notes += defect_notes(crossing, settings.time_step, end)
     if notes:
         plan = replace(plan, settings=replace(settings, notes=(*settings.notes, *notes)))
     check_sensors(crossing.structure, settings.sensors, settings.sensor_lines)
@@ -173,7 +175,8 @@ def fleet_of(train: Train, gravity: float, first: int = 0) -> Fleet:
         vehicle = item.vehicle
         if vehicle.system is not None:
             _check_vehicle(vehicle)
-            own = kinds.setdefault(id(vehicle), matrices_of(vehicle.system))
+            own = kinds.get(id(vehicle.system)) or matrices_of(vehicle.system)
+            kinds[id(vehicle.system)] = own  # vehicles that differ in their wheels alone share one
             blocks.append(own)
             names += [f"{first + i + 1}.{vehicle.system.free_name(j)}" for j in range(own.size)]
             coupled += range(contact, contact + len(vehicle.contacts))

@@ -94,7 +94,7 @@ class PreparedReduced(PreparedStructure):
         *,
         all_with_inertia: bool = False,
     ) -> None:
-        self.basis, self._stiffness, self._mass = basis, matrices.K, matrices.M
+        self.basis, self._matrices = basis, matrices
         self.resolved = resolved_shapes(basis, time_step) | all_with_inertia
         self.integrator = Integrator(reduced_matrices(matrices, basis, self.resolved), method, time_step)
         self.columns = ReducedColumns(self.integrator, basis)
@@ -107,10 +107,15 @@ class PreparedReduced(PreparedStructure):
     def _in_basis(self, state: State) -> State:
         if isinstance(state, Coordinates):
             return state
+        m, at_once = self._matrices, ~self.resolved
         # Displacements by strain energy, which also holds for shapes without inertia; rates by kinetic energy.
-        result = (self.basis.vectors.T @ np.asarray(self._mass @ state.values.T)).T
-        forces = self.basis.vectors.T @ np.asarray(self._stiffness @ state.u)
-        result[0] = forces / self.basis.angular_frequencies**2
+        inertia = (self.basis.vectors.T @ np.asarray(m.M @ state.values.T)).T
+        forces = self.basis.vectors.T @ np.asarray(m.K @ state.u)
+        # Shapes that follow at once balance all forces from the start, those that inertia and damping took too.
+        applied = forces + inertia[2] + self.basis.vectors.T @ m.damping_force(state.v)
+        result = inertia
+        result[0] = np.where(at_once, applied, forces) / self.basis.angular_frequencies**2
+        result[1:, at_once] = 0.0
         return Coordinates(np.ascontiguousarray(result))
 
     def project(self, vectors: FloatArray) -> FloatArray:

@@ -168,7 +168,9 @@ class Result(Shown):
                 "is not installed", field="pandas", fix="pip install 'axlespan[xarray]'"
             ) from error
         known = {name: row for name, row in (VARIABLES | SECTION_VARIABLES).items() if getattr(self, row[0])}
-        columns = [(name, each) for name, (dimension, *_) in known.items() for each in getattr(self, dimension)]
+        columns = [
+            (name, each) for name, (dimension, *_) in known.items() for each in getattr(self, dimension)
+        ]
         values = [getattr(self, name) for name in known]
         table = pd.DataFrame(
             np.hstack(values) if values else np.empty((len(self.time), 0)),

@@ -256,9 +256,11 @@ def _cards(summary: Mapping[str, Any]) -> str:
             found.append(("Largest unloading", f"{number(100.0 * lost, 3)} %", "of the static force"))
     body = (summary.get("vehicle_accelerations") or {}).get("body.z")
     if body:
-        ends = [(body[end], body.get(f"{end}_vehicle")) for end in ("min", "max") if body.get(end) is not None]
-        if ends:
-            value, vehicle = max(ends, key=lambda found: abs(found[0]))
+        ends = [
+            (body[end], body.get(f"{end}_vehicle")) for end in ("min", "max") if body.get(end) is not None
+        ]
+        if peaks:
+            value, vehicle = max(peaks, key=lambda found: abs(found[0]))
             where = "vertical, at its center" if vehicle is None else f"vehicle {vehicle}, at its center"
             found.append(("Largest acceleration of a body", f"{number(value)} m/s²", where))
     return "".join(

@@ -63,8 +63,9 @@ def verdict_table(summary: Summary) -> str:
         reason = verdict.get("reason") or verdict.get("note")
         why = f'<div class="why">{escape(str(reason))}</div>' if reason else ""
         least = "at least " if verdict.get("at_least") and verdict.get("limit") is not None else ""
+        name = f"{escape(str(verdict.get('quantity') or ''))}{'*' if memory else ''}"
         rows.append(
-            f'<tr><td data-label="Quantity"><div>{escape(str(verdict.get("quantity") or ""))}{"*" if memory else ""}{why}</div></td>'
+            f'<tr><td data-label="Quantity"><div>{name}{why}</div></td>'
             f'<td data-label="Clause"{title}>{clause}</td>'
             f'<td class="n" data-label="Value">{_amount(verdict.get("value"), factor, unit)}</td>'
             f'<td class="n" data-label="Limit">{least}{_amount(verdict.get("limit"), factor, unit)}</td>'

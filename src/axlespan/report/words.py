@@ -17,6 +17,12 @@ _PROFILES = {
     "harmonic": "regular waves",
     "table": "a profile given point by point",
     "spectrum": "a random profile made from a spectrum",
+    "bump": "a bump",
+    "ramp": "a ramp",
+    "dipped-joint": "a dipped joint",
+    "squat": "a squat",
+    "pothole": "a pothole",
+    "settlement": "a settlement",
     "none": "none",
 }
 
@@ -84,11 +90,23 @@ def _irregularity(case: Mapping[str, Any]) -> str:
     if kind in (None, "none"):
         return "The running surface is even." if given is None or kind == "none" else ""
     assert isinstance(given, dict)  # it has a kind
-    words = _PROFILES.get(str(kind), str(kind))
+    return f"The running surface is uneven: {_profile(given)}."
+
+
+def _profile(given: object) -> str:
+    """One irregularity in words; of a sum and of lines, all that they hold."""
+    if not isinstance(given, dict):
+        return str(given)
+    kind = str(given.get("kind"))
+    parts, lines = given.get("of"), given.get("lines")
+    if kind == "sum" and isinstance(parts, list):
+        return ", and ".join(_profile(part) for part in parts)
+    if kind == "lines" and isinstance(lines, dict):
+        return "; ".join(f"on the line {name} {_profile(one)}" for name, one in lines.items())
     details = ", ".join(
         f"{key} {_plain(value)}" for key, value in given.items() if key not in ("kind", "points")
     )
-    return f"The running surface is uneven: {words}{f' ({details})' if details else ''}."
+    return _PROFILES.get(kind, kind) + (f" ({details})" if details else "")
 
 
 def _computation(run: Mapping[str, Any], summary: Mapping[str, Any]) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator, Sequence
 
 from axlespan.errors import InputError
 from axlespan.study.case_placing import Placed
-from axlespan.study.case_wheels import OutOfRound, OfWheels, WheelFlat
+from axlespan.study.case_wheels import OfWheels, OutOfRound, WheelFlat
 from axlespan.study.faults import listed, nearest
 from axlespan.study.loader import LoadedCase
 from axlespan.study.pointing import pointing
@@ -15,7 +15,12 @@ from axlespan.vehicles.vehicle import ContactPoint
 
 
 def with_own_wheels(
-    train: Train, entries: Sequence[Placed], entry_of: Sequence[int], loaded: LoadedCase, path: str, first: int
+    train: Train,
+    entries: Sequence[Placed],
+    entry_of: Sequence[int],
+    loaded: LoadedCase,
+    path: str,
+    first: int,
 ) -> Train:
     """Return a train whose wheels have what its entries say.
 
@@ -65,7 +70,11 @@ def _wheels(train: Train, entry_of: Sequence[int], number: int, first: int) -> _
 
 def _defects(entry: Placed) -> Iterator[tuple[str, WheelFlat | OutOfRound]]:
     """Flats and waves of an entry, with their paths under it."""
-    for field, given in (("wheel_flat", entry.wheel_flat), ("out_of_round", entry.out_of_round)):
+    both: tuple[tuple[str, WheelFlat | OutOfRound | tuple[WheelFlat | OutOfRound, ...] | None], ...] = (
+        ("wheel_flat", entry.wheel_flat),
+        ("out_of_round", entry.out_of_round),
+    )
+    for field, given in both:
         if isinstance(given, (WheelFlat, OutOfRound)):
             yield field, given
         elif given is not None:

@@ -48,7 +48,9 @@ class Band(Checked):
             return raw
         if not isinstance(raw, (list, tuple)):
             near = nearest(raw, EN13848_BANDS) if isinstance(raw, str) else None
-            rule = f"must be {listed(EN13848_BANDS)} of EN 13848-1, or the shortest and the longest wavelength"
+            rule = (
+                f"must be {listed(EN13848_BANDS)} of EN 13848-1, or the shortest and the longest wavelength"
+            )
             raise InputError(rule, value=raw, fix=f"Did you mean {near}?" if near else "Write [3 m, 25 m]")
         shortest, longest = _WAVELENGTHS.read(raw)
         return shortest, longest

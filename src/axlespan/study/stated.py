@@ -43,7 +43,9 @@ def _differences(entry: LibraryEntry, prefix: str = "") -> Iterator[str]:
         yield f"{prefix}states a total mass of {show(mass, MASS)}, but its parts have {show(vehicle.total_mass, MASS)}"
     if stated.axle_loads:
         yield from (f"{prefix}{said}" for said in _loads(vehicle, stated))
-    found = np.array([mode.frequency for mode in vehicle_modes(vehicle)]) if stated.frequencies else np.empty(0)
+    found = (
+        np.array([mode.frequency for mode in vehicle_modes(vehicle)]) if stated.frequencies else np.empty(0)
+    )
     for wanted in stated.frequencies if len(found) else ():
         near = float(found[np.argmin(np.abs(found - wanted))])
         if _differ(near, wanted, stated):

@@ -7,7 +7,7 @@ import pytest
 
 from axlespan.errors import InputError
 from axlespan.plot.study import converging, draw_study, exceedance, over_speed
-from axlespan.study.sweep import Study
+from axlespan.study.sweep import Answers, Study
 from axlespan.study.sweep.resonance import Resonances, spacing_of
 from axlespan.study.sweep.statistics import Distribution, convergence
 from axlespan.vehicles import Train, axle_loads
@@ -165,3 +165,29 @@ def test_verdicts_of_scenarios_and_of_the_study(tmp_path):
     assert about["utilization"] == table["utilization.deck_acceleration"].max()
     assert about["outcomes"]["fail"] == int(exceeded.sum())
     assert any("deck acceleration" in line and "fail" in line for line in answers.lines())
+
+
+def test_the_worst_of_a_smallest_force_is_the_smallest():
+    columns = {
+        "id": np.arange(4),
+        "outcome": np.array(["completed"] * 4, dtype=object),
+        "reason": np.array([""] * 4, dtype=object),
+        "train_name": np.array(["a", "a", "b", "b"], dtype=object),
+        "speed_m_per_s": np.array([20.0, 30.0, 20.0, 30.0]),
+        "passed": np.array([True] * 4),
+        "contact_force_min_N": np.array([8e4, 5e4, 9e4, 7e4]),
+        "line_displacement_min_m": np.array([-1e-3, -3e-3, -2e-3, -5e-3]),
+        "unloading_max": np.array([0.2, 0.5, 0.1, 0.3]),
+    }
+    answers = Answers("made up", 4, columns, random=True)
+    assert answers.critical("contact_force_min_N") == {"a": (30.0, 5e4), "b": (30.0, 7e4)}
+    lines = [line.strip() for line in answers.lines()]
+    at = lines.index("smallest contact force")
+    assert lines[at + 1].startswith("a") and "50 kN at 108 km/h" in lines[at + 1]
+    low = np.quantile(columns["contact_force_min_N"], 0.05)
+    assert f"95 % above {1e-3 * low:.4g} kN" in lines[at + 3]
+    at = lines.index("largest displacement downward")
+    assert lines[at + 1].startswith("b") and "-5 mm at 108 km/h" in lines[at + 1]
+    assert "95 % above" in lines[at + 3]
+    at = lines.index("largest unloading of a wheel")
+    assert f"95 % below {100 * np.quantile(columns['unloading_max'], 0.95):.4g} %" in lines[at + 3]

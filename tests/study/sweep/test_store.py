@@ -112,7 +112,7 @@ def test_full_disks_at_random_moments(study_file, tmp_path, monkeypatch, small_p
     study.run(tmp_path / "reference")
     chosen = random.Random(5)
     write = files.write_whole
-    for attempt in range(5):
+    for attempt in range(3):
         folder = tmp_path / f"out{attempt}"
         resume = False
         for _ in range(2):

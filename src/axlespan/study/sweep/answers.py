@@ -145,7 +145,9 @@ class Answers:
         rows = rows[np.lexsort((sign * values[rows], speeds[rows]))]
         first = np.flatnonzero(np.diff(speeds[rows], prepend=-np.inf) > 0.0)
         rows = rows[first]
-        return Envelope(speeds[rows], values[rows], np.asarray(self.columns["id"])[rows].astype(np.int64), lowest)
+        return Envelope(
+            speeds[rows], values[rows], np.asarray(self.columns["id"])[rows].astype(np.int64), lowest
+        )
 
     def critical(self, quantity: str) -> dict[str, tuple[float, float]]:
         """Critical speed [m/s] of each train, and what the quantity reaches there."""
@@ -273,7 +275,9 @@ class Answers:
             for name in shown:
                 lines.append(f"  {_in_words(name)}")
                 criticals = self.critical(name)
-                ranked = sorted(criticals.items(), key=lambda item: -abs(item[1][1]))
+                lowest = name.endswith(_LOWEST)
+                order = {train: value if lowest else -abs(value) for train, (_, value) in criticals.items()}
+                ranked = [(train, criticals[train]) for train in sorted(order, key=order.__getitem__)]
                 lines += [
                     f"    {train[:width]:{width}}  {_scaled(name, value)} at {3.6 * speed:.4g} km/h"
                     for train, (speed, value) in ranked[:5]
@@ -282,10 +286,11 @@ class Answers:
                     lines.append(f"    ... and {len(ranked) - 5} more trains")
                 if self.random:
                     spread = self.distribution(name)
-                    low, high = spread.interval(0.95)
+                    share, side = (0.05, "above") if lowest else (0.95, "below")
+                    low, high = spread.interval(share)
                     lines.append(
                         f"    mean {_scaled(name, spread.mean)} ± {_scaled(name, spread.standard_error)} (standard error), "
-                        f"95 % below {_scaled(name, spread.quantile(0.95))} "
+                        f"95 % {side} {_scaled(name, spread.quantile(share))} "
                         f"(95 % confidence: {_scaled(name, low)} to {_scaled(name, high)})"
                     )
         if self.verdict is not None:

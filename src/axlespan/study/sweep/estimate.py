@@ -36,6 +36,8 @@ _ROW: Final = 9.0
 _PACKED: Final = 0.7
 # Copies of the histories of a batch that are in memory at a time: recorder, result, shard.
 _COPIES: Final = 3.0
+# What a scenario in a batch needs beside: tapes that wait to be worked up, tables [byte].
+_GATHERED: Final = 1e6
 # Share of the free memory that batches may take, and the most [byte] for one worker.
 _SHARE, _LARGEST = 0.4, 2e9
 
@@ -116,7 +118,7 @@ def try_out(
         beside=beside,
         building=again + start,
         structure=max(0.0, afresh - again) + first,
-        memory=max(_COPIES * size_of(plan).result for plan in plans) + 2e5,
+        memory=max(_COPIES * size_of(plan).result for plan in plans) + _GATHERED,
         kept=float(np.mean([_kept_bytes(recipe, plan) for plan in plans])),
         built=len(plans),
         passed=sum(has_passed(plan) for plan in plans),

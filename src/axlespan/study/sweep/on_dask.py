@@ -189,7 +189,9 @@ def _require_same(client: Any) -> None:
     except Exception as error:
         if isinstance(error, OSError) or client.status != "running":
             rule = "is gone: it answered, and then closed the connection"
-            raise InputError(rule, field="scheduler", fix="Start it again, and look at what it wrote before it ended") from error
+            raise InputError(
+                rule, field="scheduler", fix="Start it again, and look at what it wrote before it ended"
+            ) from error
         words = " ".join(str(error).split())[:200] or type(error).__name__
         raise InputError(
             f"cannot use axlespan on a worker: {words}",

@@ -16,8 +16,8 @@ from axlespan.study.sweep.workshop import Task
 
 IntArray = npt.NDArray[np.int64]
 
-MOST_LANES: Final = 128
-"""Most scenarios side by side: beyond, a step costs as much for each as in two batches."""
+MOST_LANES: Final = 32
+"""Most scenarios side by side: beyond, what they work on does not fit into a processor's cache any more."""
 
 # Tasks for each worker, so that they end at about the same time, and the fewest scenarios of one.
 _TASKS_EACH, _FEWEST = 4, 8

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from axlespan.card import Card, Shown, some
 from axlespan.errors import InputError
 from axlespan.interaction.result import Result
 from axlespan.interaction.simulate import run_plan
@@ -136,7 +137,7 @@ class RunOutcome:
     reasons: tuple[str, ...] = ()  # why some are missing
 
 
-class Study:
+class Study(Shown):
     """Many scenarios around one case.
 
     Parameters
@@ -243,6 +244,15 @@ class Study:
     def title(self) -> str:
         """Its title, that of the base, or the name of its file."""
         return self.spec.title or str(self.spec.base.data.get("title") or "") or self.spec.source.file
+
+    def card(self) -> Card:
+        """Return what is shown of it."""
+        facts = [("title", self.title), ("scenarios", f"{len(self._scenarios)}")]
+        facts.append(("varies", some([f"{path} ({len(part)})" for path, part in zip_paths(self._scenarios)])))
+        if self._store is None:
+            return Card("Study", facts, 'study.run("folder")')
+        facts.append(("folder", str(self._store.folder)))
+        return Card("Study", facts, "study.table(), study.answers()")
 
     @property
     def scenarios(self) -> ScenarioList:
@@ -422,10 +432,6 @@ class Study:
                 "is needed: the study has not been run here", field="folder", fix="Name its store"
             )
         return self._store
-
-    def __repr__(self) -> str:
-        paths = ", ".join(f"{path} ({len(part)})" for path, part in zip_paths(self._scenarios))
-        return f"Study: {len(self._scenarios)} scenarios; {paths}"
 
 
 def _require_countable(spec: Spec) -> None:
