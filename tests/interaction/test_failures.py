@@ -168,7 +168,9 @@ class TestVehicles:
 
     def test_loads(self):
         vehicle = self.wagon(lambda m: m.with_support("wall", ["z"]).with_load("body", "z", -10.0, np.sin))
-        with pytest.raises(InputError, match="'wagon': has loads that change in time, which are not supported"):
+        with pytest.raises(
+            InputError, match="'wagon': has loads that change in time, which are not supported"
+        ):
             run(Crossing(BRIDGE, Train.of(vehicle), speed=30.0))
 
     def test_supports_that_move(self):

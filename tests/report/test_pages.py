@@ -60,6 +60,7 @@ def test_the_case_in_plain_words(beam):
     assert "The running surface is even." in text
     assert "computed over 0.9 s in 900 steps of 1 ms" in text
     assert "Largest displacement of a sensor −2.407 mm at midspan" in text  # the paper's figure 3: -2.41 mm
+    assert re.search(r"Largest acceleration of a body −?[\d.]+ m/s² vehicle 1, at its center", text)
     assert "young" not in text.lower() or "2.87 GPa" in text
 
 

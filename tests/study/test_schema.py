@@ -60,13 +60,38 @@ RIGHT = [
             "band: D1, scale: -1, shift: 3 m}",
         ),
     ),
-    (("80 km/h", "80 km/h\n  irregularity: {kind: table, points: [[0, 0], [1, 0]], detrend: 2, band: [3 m, 25 m]}"),),
-    (("count: 3", "count: 3\n    wheel_flat: {length: 50 mm, wheels: [1.1, '1.2'], shape: rounded, at: 3 m}"),),
+    (
+        (
+            "80 km/h",
+            "80 km/h\n  irregularity: {kind: table, points: [[0, 0], [1, 0]], detrend: 2, band: [3 m, 25 m]}",
+        ),
+    ),
+    (
+        (
+            "count: 3",
+            "count: 3\n    wheel_flat: {length: 50 mm, wheels: [1.1, '1.2'], shape: rounded, at: 3 m}",
+        ),
+    ),
     (("count: 3", "count: 3\n    out_of_round: [{amplitude: 1 mm, order: 3, wheels: all, phase: 30 deg}]"),),
     (("count: 3", "count: 3\n    contact_patch: 0.24 m"),),
-    (("80 km/h", "80 km/h\n  acceleration: -0.5 m/s^2\n  to_speed: 10\n  direction: backward\n  delay: 1 s"),),
-    (("80 km/h", "80 km/h\n  irregularity: {kind: lines, lines: {main: none, left: {kind: table, points: [[0, 0], [1, 0]]}}}"),),
-    (("analysis:", "other_trains:\n  - {train: [{vehicle: hslm-b, forces: 12, distance: 3 m}], speed: 30}\nanalysis:"),),
+    (
+        (
+            "80 km/h",
+            "80 km/h\n  acceleration: -0.5 m/s^2\n  to_speed: 10\n  direction: backward\n  delay: 1 s",
+        ),
+    ),
+    (
+        (
+            "80 km/h",
+            "80 km/h\n  irregularity: {kind: lines, lines: {main: none, left: {kind: table, points: [[0, 0], [1, 0]]}}}",
+        ),
+    ),
+    (
+        (
+            "analysis:",
+            "other_trains:\n  - {train: [{vehicle: hslm-b, forces: 12, distance: 3 m}], speed: 30}\nanalysis:",
+        ),
+    ),
     (("steps: 2000", "steps: 2000\n  vehicles: axle-loads"),),
     (
         (

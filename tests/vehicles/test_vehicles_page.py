@@ -27,15 +27,16 @@ def folder(tmp_path_factory):
 
 def test_all_files_are_found():
     assert sorted(FILES) == sorted(
-        f"{name}.yaml"
-        for name in ("case", "wagon", "articulated", "semitrailer", "tram", "wind", "freight")
+        f"{name}.yaml" for name in ("case", "wagon", "articulated", "semitrailer", "tram", "wind", "freight")
     )
 
 
 def test_the_wagon(folder):
     entry = library.load(folder / "wagon.yaml")
     np.testing.assert_allclose(entry.model.static_forces(), (14e3 + 1.3e3) * G)
-    assert entry.stated.axle_loads[0] == pytest.approx(entry.model.static_forces()[0], rel=entry.stated.tolerance)
+    assert entry.stated.axle_loads[0] == pytest.approx(
+        entry.model.static_forces()[0], rel=entry.stated.tolerance
+    )
     assert entry.model.length == 11.5
 
 

@@ -77,7 +77,9 @@ class Plan:
     def is_nonlinear(self) -> bool:
         """Whether contact may let go or give way, or the structure has nonlinear springs."""
         systems = [self.crossing.structure.system]
-        systems += [item.vehicle.system for item in self.crossing.placements if item.vehicle.system is not None]
+        systems += [
+            item.vehicle.system for item in self.crossing.placements if item.vehicle.system is not None
+        ]
         return not self.laws.all_rigid or any(system.nonlinear for system in systems)
 
     @property

@@ -239,7 +239,10 @@ def _sleepers(crossing: Crossing, spacing: float | None) -> float:
         return 0.0
     if not 0.0 < spacing <= _WIDEST_SLEEPERS:
         raise InputError(
-            f"must be positive and at most {_WIDEST_SLEEPERS:g} m", field="sleepers", value=spacing, fix="Use 0.6 m"
+            f"must be positive and at most {_WIDEST_SLEEPERS:g} m",
+            field="sleepers",
+            value=spacing,
+            fix="Use 0.6 m",
         )
     if RAIL_LINE in crossing.structure.lines:
         raise InputError(

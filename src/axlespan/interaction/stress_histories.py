@@ -25,7 +25,9 @@ class StressHistories:
         found = StressPoints((), sp.csr_array((0, system.size)))
         for line, (numbers, places) in groups.items():
             more = StressPoints.at(structure, [wanted[i] for i in numbers], places, line)
-            found = StressPoints((*found.names, *more.names), sp.csr_array(sp.vstack([found.rows, more.rows])))
+            found = StressPoints(
+                (*found.names, *more.names), sp.csr_array(sp.vstack([found.rows, more.rows]))
+            )
         self.names = found.names
         free = sp.csc_array(found.rows[:, system.free])
         self.free_dofs = np.unique(free.nonzero()[1]).astype(np.int64)

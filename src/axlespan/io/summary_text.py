@@ -80,7 +80,10 @@ def _head(summary: Summary) -> list[str]:
         ("structure", _joined(run["structure"], _with(length, "{:.6g} m"), _dofs(summary))),
         ("train", _joined(run["train"], _wheels(run))),
         ("speed", _speed(run)),
-        *(("and", _joined(other["train"], _wheels(other), _speed(other))) for other in run.get("other_trains") or ()),
+        *(
+            ("and", _joined(other["train"], _wheels(other), _speed(other)))
+            for other in run.get("other_trains") or ()
+        ),
         ("time", _time(run)),
         ("computed", _computed(summary["computation"])),
     ]

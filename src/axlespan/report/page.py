@@ -256,7 +256,7 @@ def _cards(summary: Mapping[str, Any]) -> str:
             found.append(("Largest unloading", f"{number(100.0 * lost, 3)} %", "of the static force"))
     body = (summary.get("vehicle_accelerations") or {}).get("body.z")
     if body:
-        ends = [
+        peaks = [
             (body[end], body.get(f"{end}_vehicle")) for end in ("min", "max") if body.get(end) is not None
         ]
         if peaks:

@@ -110,9 +110,7 @@ class BeamSections:
             static, inertial = static + a, inertial + b
             damping = damping + rayleigh.alpha * b + rayleigh.beta * a
         elimination = self.structure.system.elimination
-        static, damping, inertial = (
-            sp.csr_array(rows @ elimination) for rows in (static, damping, inertial)
-        )
+        static, damping, inertial = (sp.csr_array(rows @ elimination) for rows in (static, damping, inertial))
         return static, damping, inertial
 
     def _signs(self, at: IntArray) -> FloatArray:
