@@ -97,4 +97,5 @@ class Table:
         beyond = (wanted - x) * np.where(wanted < x, self.r[0], self.r[-1])
         i = np.clip(np.searchsorted(self.x, x, side="right") - 1, 0, self.x.size - 2)
         dx = x - self.x[i]
-        return beyond + self._areas[i] + dx * (self.r[i] + 0.5 * dx * np.diff(self.r)[i] / np.diff(self.x)[i])
+        inside = dx * (self.r[i] + 0.5 * dx * np.diff(self.r)[i] / np.diff(self.x)[i])
+        return np.asarray(beyond + self._areas[i] + inside)

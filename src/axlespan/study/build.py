@@ -104,7 +104,7 @@ def _crossing(loaded: LoadedCase, structure: Structure, train: Train) -> Crossin
     case = loaded.case.crossing
     with pointing(loaded, "crossing.irregularity"):
         profile = irregularity_of(case.irregularity, structure)
-    others = []
+    others: list[OtherTrain] = []
     for number, other in enumerate(loaded.case.other_trains):
         path = f"other_trains.{number}"
         with pointing(loaded, f"{path}.irregularity"):

@@ -6,7 +6,8 @@ from typing import Annotated
 
 from pydantic import Field
 
-from axlespan.study.case_crossing import KINDS, Irregularity, Movement
+from axlespan.study.case_crossing import Movement
+from axlespan.study.case_irregularity import KINDS, Irregularity
 from axlespan.study.case_train import Entry
 
 

@@ -163,8 +163,10 @@ def _read_suspension(item: Item, numbers: Quantities, read: _Parts) -> None:
         places = numbers.several(keys["at"], units.LENGTH, f"{where}.at")
         if len(places) != len(pairs):
             raise keys["at"].wrong(f"has {len(places)} values for {len(pairs)} pairs under between")
+    plain = Suspension(pairs[0])
+    plain = replace(plain, **more)  # type: ignore[arg-type]  # all of them are numbers
     for pair, place in zip(pairs, places, strict=True):
-        read.add("suspensions", Suspension(pair, at=place, **more), item)
+        read.add("suspensions", replace(plain, between=pair, at=place), item)
 
 
 def _read_hinge(item: Item, numbers: Quantities, read: _Parts) -> None:
