@@ -72,7 +72,10 @@ class OnDask:
 
     def _outcome(self, future: Any, task: Task) -> Done | Lost:
         if future.status == "finished":
-            done: Done = future.result()
+            try:
+                done: Done = future.result()
+            except OSError as error:  # of Dask: the connection was lost while the result came over
+                raise ConnectionError("the scheduler is gone") from error
             return done
         if future.status in ("cancelled", "lost") or self._client.status != "running":
             raise ConnectionError("the scheduler is gone")
