@@ -7,7 +7,12 @@ from scipy.optimize import brentq, nnls
 from axlespan.contact.laws import LAWS, Hertz, LinearSpring, Rigid, Unilateral, hertz_stiffness, law_of
 from axlespan.contact.laws_of_wheels import WheelLaws
 from axlespan.errors import InputError
-from axlespan.interaction.interface_solver import Interface, NotConverged, complementary, solve_interface
+from axlespan.interaction.nonlinear.interface_solver import (
+    Interface,
+    NotConverged,
+    complementary,
+    solve_interface,
+)
 
 
 @pytest.mark.parametrize(

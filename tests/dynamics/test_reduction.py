@@ -8,7 +8,7 @@ import pytest
 import axlespan as asp
 from axlespan.dynamics.reduction import reduced_basis
 from axlespan.errors import InputError
-from axlespan.interaction.reduced_body import resolved_shapes
+from axlespan.interaction.reduced.body import resolved_shapes
 from axlespan.interaction.simulate import reduce_structure
 from axlespan.model.damping import Modal, Rayleigh
 

@@ -6,7 +6,7 @@ import pytest
 from axlespan.bridges.spans import simple_span
 from axlespan.dynamics.alpha import Alpha
 from axlespan.interaction.crossing import Crossing
-from axlespan.interaction.force_noise import NoiseMonitor
+from axlespan.interaction.records.force_noise import NoiseMonitor
 from axlespan.interaction.simulate import simulate
 from axlespan.model.compile import compile_model
 from axlespan.model.damping import Rayleigh

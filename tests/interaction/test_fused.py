@@ -7,7 +7,7 @@ from axlespan.bridges import ballasted_track, simple_span, with_track
 from axlespan.dynamics.alpha import Alpha
 from axlespan.interaction import simulate as module
 from axlespan.interaction.crossing import Crossing
-from axlespan.interaction.fused import FusedMarch
+from axlespan.interaction.fused.march import FusedMarch
 from axlespan.interaction.simulate import simulate_many
 from axlespan.irregularity import Harmonic
 from axlespan.vehicles.simple import axle_loads, sprung_mass
@@ -74,7 +74,7 @@ def test_same_numbers(structure, tolerance, alpha, count, monkeypatch):
 
 def test_an_indefinite_contact_system_is_refused():
     """The small Cholesky factorization says so, and solves what is definite."""
-    from axlespan.interaction.fused_kernel import solve_small
+    from axlespan.interaction.fused.kernel import solve_small
 
     rng = np.random.default_rng(3)
     half = rng.standard_normal((7, 7))

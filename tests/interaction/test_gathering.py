@@ -7,11 +7,12 @@ import pytest
 
 from axlespan.bridges.spans import simple_span
 from axlespan.dynamics.alpha import Alpha
-from axlespan.interaction import convoy, gathering
+from axlespan.interaction import convoy
 from axlespan.interaction.crossing import Crossing
 from axlespan.interaction.plan import plan_for
-from axlespan.interaction.reactions import on_segments
-from axlespan.interaction.recorder import Recorder
+from axlespan.interaction.records import gathering
+from axlespan.interaction.records.reactions import on_segments
+from axlespan.interaction.records.recorder import Recorder
 from axlespan.interaction.settings import settings_for
 from axlespan.interaction.simulate import run_plans, simulate
 from axlespan.irregularity import Harmonic

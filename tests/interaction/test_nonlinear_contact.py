@@ -13,9 +13,9 @@ from axlespan.errors import AnalysisError, InputError, Outcome
 from axlespan.interaction.convoy import Lane, drive
 from axlespan.interaction.crossing import Crossing
 from axlespan.interaction.groundwork import prepare
-from axlespan.interaction.nonlinear import begin_nonlinear, watch
+from axlespan.interaction.nonlinear.march import begin_nonlinear, watch
 from axlespan.interaction.plan import plan_for
-from axlespan.interaction.recorder import Recorder
+from axlespan.interaction.records.recorder import Recorder
 from axlespan.interaction.settings import settings_for
 from axlespan.interaction.simulate import simulate, simulate_many
 from axlespan.interaction.start import StartFactors

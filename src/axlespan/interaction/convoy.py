@@ -20,9 +20,9 @@ from axlespan.errors import AnalysisError
 from axlespan.interaction.bodies import FleetBody, PreparedStructure, StructureBody
 from axlespan.interaction.contact_system import Stretch, stretch_of
 from axlespan.interaction.plan import Fleet, Plan, joined
-from axlespan.interaction.recorder import Recorder
+from axlespan.interaction.records.recorder import Recorder
+from axlespan.interaction.records.tape import LaneTape, Tape, Watched
 from axlespan.interaction.start import Start
-from axlespan.interaction.tape import LaneTape, Tape, Watched
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from axlespan.interaction.envelopes import UNITS, Envelope, Envelopes
-from axlespan.interaction.fields import Fields
+from axlespan.interaction.records.envelopes import UNITS, Envelope, Envelopes
+from axlespan.interaction.records.fields import Fields
 
 if TYPE_CHECKING:
     from axlespan.interaction.result import Result

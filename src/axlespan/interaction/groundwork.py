@@ -13,7 +13,7 @@ from axlespan.dynamics.reduction import ReducedBasis, reduced_basis
 from axlespan.errors import InputError
 from axlespan.interaction.bodies import PreparedStructure
 from axlespan.interaction.plan import Plan
-from axlespan.interaction.reduced_body import PreparedReduced
+from axlespan.interaction.reduced.body import PreparedReduced
 from axlespan.interaction.start import StartFactors
 from axlespan.running.structure import Structure
 

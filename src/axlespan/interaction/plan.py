@@ -17,7 +17,7 @@ from axlespan.errors import InputError
 from axlespan.interaction.crossing import Crossing
 from axlespan.interaction.defect_notes import defect_notes
 from axlespan.interaction.forces import AppliedForces
-from axlespan.interaction.nonlinear_laws import laws_of, require_direct
+from axlespan.interaction.nonlinear.laws import laws_of, require_direct
 from axlespan.interaction.sensors import by_line, check_sensors, sensor_rows
 from axlespan.interaction.settings import Settings
 from axlespan.interaction.surface_notes import start_notes, surface_notes

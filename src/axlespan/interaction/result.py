@@ -11,9 +11,9 @@ import numpy.typing as npt
 
 from axlespan.card import Card, Shown
 from axlespan.errors import InputError, Outcome
-from axlespan.interaction.envelopes import Envelopes
 from axlespan.interaction.extras import SECTION_VARIABLES, extra_coordinates, extra_variables
-from axlespan.interaction.fields import Fields
+from axlespan.interaction.records.envelopes import Envelopes
+from axlespan.interaction.records.fields import Fields
 
 if TYPE_CHECKING:
     import pandas

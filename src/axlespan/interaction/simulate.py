@@ -17,18 +17,18 @@ from axlespan.errors import AnalysisError, InputError, Outcome
 from axlespan.interaction.bodies import PreparedStructure
 from axlespan.interaction.convoy import Couple, Lane, drive
 from axlespan.interaction.crossing import Crossing
-from axlespan.interaction.fused import FusedMarch
+from axlespan.interaction.fused.march import FusedMarch
 from axlespan.interaction.groundwork import Groundwork, basis_for, prepare_reduced, translations
-from axlespan.interaction.iterative import IterativeCoupling
-from axlespan.interaction.literal import couple_literally
 from axlespan.interaction.march import couple_directly
-from axlespan.interaction.nonlinear import begin_nonlinear, watch
+from axlespan.interaction.nonlinear.march import begin_nonlinear, watch
 from axlespan.interaction.plan import Plan, plan_for
 from axlespan.interaction.progress_bar import reporting
-from axlespan.interaction.recorder import Recorder
-from axlespan.interaction.reduction_error import ReductionError, ringing_runs
-from axlespan.interaction.refactored import couple_by_refactoring
+from axlespan.interaction.records.recorder import Recorder
+from axlespan.interaction.reduced.error import ReductionError, ringing_runs
 from axlespan.interaction.result import Result
+from axlespan.interaction.rivals.iterative import IterativeCoupling
+from axlespan.interaction.rivals.literal import couple_literally
+from axlespan.interaction.rivals.refactored import couple_by_refactoring
 from axlespan.interaction.sensors import SensorPlace
 from axlespan.interaction.settings import LOST_AFTER, RIGID, Iteration, Settings, settings_for
 from axlespan.interaction.start import StartFactors, start_of
@@ -112,7 +112,7 @@ def simulate(
         Tolerance, relaxation and limit of the iterative coupling.
     fields : sequence of float, or int, optional
         Times [s] of whole displacement and velocity fields (the nearest steps are taken), or at every so
-        many steps; see :class:`axlespan.interaction.fields.Fields`.
+        many steps; see :class:`axlespan.interaction.records.fields.Fields`.
     section_forces : sequence of str, optional
         Names of sensors at which moment, shear, normal force and torsion of the beams are kept.
     stresses : sequence of str, optional

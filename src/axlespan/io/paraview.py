@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from axlespan.errors import InputError
 from axlespan.interaction.crossing import Crossing
-from axlespan.interaction.fields import Fields
+from axlespan.interaction.records.fields import Fields
 from axlespan.interaction.result import Result
 from axlespan.io.vtk_xml import LINE, VERTEX, Cells, Grid, write_collection, write_grid
 from axlespan.linalg.eigen import Modes

@@ -74,8 +74,8 @@ class OnDask:
         if future.status == "finished":
             try:
                 done: Done = future.result()
-            except OSError as error:  # of Dask: the connection was lost while the result came over
-                raise ConnectionError("the scheduler is gone") from error
+            except OSError as lost:  # of Dask: the connection, while the result came over
+                raise ConnectionError("the scheduler is gone") from lost
             return done
         if future.status in ("cancelled", "lost") or self._client.status != "running":
             raise ConnectionError("the scheduler is gone")

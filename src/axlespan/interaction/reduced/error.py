@@ -21,8 +21,8 @@ from axlespan.dynamics.integrator import State
 from axlespan.dynamics.reduction import ReducedBasis
 from axlespan.interaction.convoy import Couple, Lane, drive
 from axlespan.interaction.plan import Plan
-from axlespan.interaction.recorder import Recorder
-from axlespan.interaction.reduced_body import PreparedReduced
+from axlespan.interaction.records.recorder import Recorder
+from axlespan.interaction.reduced.body import PreparedReduced
 from axlespan.interaction.start import Start
 
 FloatArray = npt.NDArray[np.float64]
@@ -56,7 +56,7 @@ class ReductionError:
     def look(
         self, step: int, structure: State, vehicles: State, load: FloatArray, forces: FloatArray
     ) -> None:
-        """Look at a completed step; see :class:`axlespan.interaction.watchers.Watcher`."""
+        """Look at a completed step; see :class:`axlespan.interaction.records.watchers.Watcher`."""
         plan, matrices = self._plan, self._plan.structure
         factors = plan.forces.factors(plan.times_of(np.array([step])))[0]
         out_of_balance = plan.forces.vectors @ np.where(plan.forces.inertial, 0.0, factors) - load
@@ -97,7 +97,7 @@ class PathSamples:
     def look(
         self, step: int, structure: State, vehicles: State, load: FloatArray, forces: FloatArray
     ) -> None:
-        """Look at a completed step; see :class:`axlespan.interaction.watchers.Watcher`."""
+        """Look at a completed step; see :class:`axlespan.interaction.records.watchers.Watcher`."""
         self.on_path[step] = structure.u[self._basis.path_dofs]
 
 

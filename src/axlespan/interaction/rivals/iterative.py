@@ -13,8 +13,8 @@ from axlespan.errors import AnalysisError
 from axlespan.interaction.bodies import FleetBody
 from axlespan.interaction.contact_system import Stretch
 from axlespan.interaction.convoy import Convoy
-from axlespan.interaction.led_fleet import LedFleet
 from axlespan.interaction.march import all_forces
+from axlespan.interaction.rivals.led_fleet import LedFleet
 
 FloatArray = npt.NDArray[np.float64]
 

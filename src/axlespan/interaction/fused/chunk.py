@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from axlespan.interaction.banded_body import BandedBody
 from axlespan.interaction.bodies import StructureBody
 from axlespan.interaction.contact_system import Stretch
+from axlespan.interaction.fused.banded_body import BandedBody
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

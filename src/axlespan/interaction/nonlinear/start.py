@@ -21,8 +21,8 @@ import scipy.sparse as sp
 from axlespan.contact.laws_of_wheels import WheelLaws
 from axlespan.dynamics.integrator import State
 from axlespan.errors import AnalysisError
-from axlespan.interaction.nonlinear_balance import Balance
-from axlespan.interaction.nonlinear_springs import Springs, slope_times
+from axlespan.interaction.nonlinear.balance import Balance
+from axlespan.interaction.nonlinear.springs import Springs, slope_times
 from axlespan.interaction.plan import Plan
 from axlespan.interaction.start import (
     ContactRows,

@@ -16,7 +16,7 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from axlespan.interaction.bodies import FleetBody, StructureBody
-from axlespan.interaction.nonlinear_springs import Springs
+from axlespan.interaction.nonlinear.springs import Springs
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

@@ -23,7 +23,7 @@ import numpy.typing as npt
 
 from axlespan.contact.laws_of_wheels import WheelLaws
 from axlespan.dynamics.integrator import State
-from axlespan.interaction.interface_solver import complementary
+from axlespan.interaction.nonlinear.interface_solver import complementary
 from axlespan.interaction.plan import Plan
 from axlespan.interaction.start import ContactRows, StartFactors, mass_factor, rows_at, where_mass
 from axlespan.linalg.factor import Factor

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from axlespan.interaction.lane_vectors import plus, plus_size, put, read, scaled, total
+from axlespan.interaction.fused.lane_vectors import plus, plus_size, put, read, scaled, total
 from axlespan.linalg.compiled import as_compiled
 
 # A response to contact that is so much smaller than its largest value is none; asked every so many rows.

@@ -17,11 +17,11 @@ import scipy.sparse as sp
 
 from axlespan.dynamics.block_step import BlockStepper
 from axlespan.errors import AnalysisError
-from axlespan.interaction.banded_body import BandedBody, csr_parts
 from axlespan.interaction.bodies import PreparedStructure, StructureBody
 from axlespan.interaction.contact_system import Stretch
 from axlespan.interaction.convoy import Convoy
-from axlespan.interaction.fused_chunk import Chunk, chunks_of
+from axlespan.interaction.fused.banded_body import BandedBody, csr_parts
+from axlespan.interaction.fused.chunk import Chunk, chunks_of
 from axlespan.linalg.compiled import Loop
 
 FloatArray = npt.NDArray[np.float64]
@@ -33,7 +33,7 @@ _CHUNK, _WORTH_A_CHUNK = 8, 3
 
 @cache
 def _march() -> Loop:
-    from axlespan.interaction.fused_kernel import march  # numba is an optional part
+    from axlespan.interaction.fused.kernel import march  # numba is an optional part
 
     return march
 

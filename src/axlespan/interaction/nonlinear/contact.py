@@ -7,7 +7,7 @@ One step:
    method on the compliance S: the structure's share of it is interpolated from columns of A⁻¹ at hand;
 3. both bodies take the forces.
 
-Wheels of a one-sided contact that land get an inelastic landing, see :mod:`axlespan.interaction.nonlinear_balance`.
+Wheels of a one-sided contact that land get an inelastic landing, see :mod:`axlespan.interaction.nonlinear.balance`.
 The factor of A serves all steps.
 """
 
@@ -24,11 +24,11 @@ from axlespan.errors import AnalysisError
 from axlespan.interaction.bodies import StructureBody
 from axlespan.interaction.contact_system import Stretch
 from axlespan.interaction.convoy import Convoy
-from axlespan.interaction.flights import Flights
-from axlespan.interaction.interface_solver import Interface, NotConverged, Solution, solve_interface
 from axlespan.interaction.march import all_forces
-from axlespan.interaction.nonlinear_balance import Balance
-from axlespan.interaction.spring_field import SpringField
+from axlespan.interaction.nonlinear.balance import Balance
+from axlespan.interaction.nonlinear.flights import Flights
+from axlespan.interaction.nonlinear.interface_solver import Interface, NotConverged, Solution, solve_interface
+from axlespan.interaction.nonlinear.spring_field import SpringField
 from axlespan.interaction.start import ContactRows
 
 FloatArray = npt.NDArray[np.float64]

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from axlespan.interaction.flights import Flights
-from axlespan.interaction.nonlinear_balance import Balance
-from axlespan.interaction.nonlinear_contact import NonlinearCoupling
-from axlespan.interaction.nonlinear_springs import Springs
-from axlespan.interaction.nonlinear_start import nonlinear_start
+from axlespan.interaction.nonlinear.balance import Balance
+from axlespan.interaction.nonlinear.contact import NonlinearCoupling
+from axlespan.interaction.nonlinear.flights import Flights
+from axlespan.interaction.nonlinear.spring_field import SpringField
+from axlespan.interaction.nonlinear.springs import Springs
+from axlespan.interaction.nonlinear.start import nonlinear_start
 from axlespan.interaction.plan import Plan
-from axlespan.interaction.recorder import Recorder
-from axlespan.interaction.spring_field import SpringField
+from axlespan.interaction.records.recorder import Recorder
 from axlespan.interaction.start import Start, StartFactors
 
 

@@ -12,21 +12,26 @@ import scipy.sparse as sp
 
 from axlespan.dynamics.integrator import State
 from axlespan.errors import AnalysisError, Outcome
-from axlespan.interaction.envelopes import EnvelopeMonitor
-from axlespan.interaction.fields import FieldWatcher
-from axlespan.interaction.force_noise import NoiseMonitor
-from axlespan.interaction.gathering import Gathering
-from axlespan.interaction.line_histories import LineHistories
-from axlespan.interaction.monitors import BalanceMonitor, CompatibilityMonitor, EnergyMonitor, TensionMonitor
 from axlespan.interaction.plan import Plan
-from axlespan.interaction.reactions import Reactions
+from axlespan.interaction.records.envelopes import EnvelopeMonitor
+from axlespan.interaction.records.fields import FieldWatcher
+from axlespan.interaction.records.force_noise import NoiseMonitor
+from axlespan.interaction.records.gathering import Gathering
+from axlespan.interaction.records.line_histories import LineHistories
+from axlespan.interaction.records.monitors import (
+    BalanceMonitor,
+    CompatibilityMonitor,
+    EnergyMonitor,
+    TensionMonitor,
+)
+from axlespan.interaction.records.reactions import Reactions
+from axlespan.interaction.records.section_forces import SectionHistories
+from axlespan.interaction.records.stress_histories import StressHistories
+from axlespan.interaction.records.tape import LaneTape
+from axlespan.interaction.records.watchers import Keeper, Watcher, Watchers
 from axlespan.interaction.result import Result
-from axlespan.interaction.section_forces import SectionHistories
 from axlespan.interaction.sensors import as_weights
 from axlespan.interaction.settings import DAMPED_ALPHA
-from axlespan.interaction.stress_histories import StressHistories
-from axlespan.interaction.tape import LaneTape
-from axlespan.interaction.watchers import Keeper, Watcher, Watchers
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from axlespan.dynamics.integrator import Matrices, State
 from axlespan.interaction.plan import Plan
-from axlespan.interaction.reactions import on_segments
+from axlespan.interaction.records.reactions import on_segments
 from axlespan.running.path import PolynomialPath
 
 FloatArray = npt.NDArray[np.float64]

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from axlespan.elements.beam_sections import QUANTITIES
 from axlespan.errors import InputError
 from axlespan.interaction.plan import Plan
-from axlespan.interaction.section_forces import SectionForces
+from axlespan.interaction.records.section_forces import SectionForces
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

@@ -1,0 +1,1 @@
+"""Contact that lets go and springs that are not linear, in time."""

@@ -1,0 +1,1 @@
+"""Other couplings, to compare with: iterative, refactored, and N12 as printed."""
