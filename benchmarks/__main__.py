@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from benchmarks import beams, growth, nonlinear, solid, sweeps, track
-from benchmarks.timing import report
+from benchmarks.timing import Row, heading, show, write
 
 BENCHMARKS = {
     "beams": beams.run,
@@ -28,8 +28,14 @@ def main() -> None:
     parser.add_argument("--output", type=Path, default=Path("out/bench.json"))
     arguments = parser.parse_args()
     runs = arguments.runs or (1 if arguments.quick else 3)
-    rows = [row for name in arguments.names or BENCHMARKS for row in BENCHMARKS[name](runs, arguments.quick)]
-    report(rows, arguments.output)
+    rows: list[Row] = []
+    heading()
+    for name in arguments.names or BENCHMARKS:
+        done = BENCHMARKS[name](runs, arguments.quick)
+        show(done)
+        rows += done
+        write(rows, arguments.output)  # what is done is kept if a later one fails
+    print(f"Written to {arguments.output}")
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ def run(runs: int, quick: bool = False) -> list[Row]:
     """Linear ballast, unilateral ballast, and four hanging sleepers; then laws of contact on the linear one."""
     linear = track.bridge(approach=_APPROACH)
     unilateral = with_unilateral_springs(linear, "ballast")
-    hanging = [(12.0 + 0.6 * i, 1e-3) for i in range(4)]
+    hanging = [(12.15 + 0.6 * i, 1e-3) for i in range(4)]  # the nearest sleepers
     loose = with_unilateral_springs(linear, "ballast", hanging=hanging)
     train = track.train(4)
 

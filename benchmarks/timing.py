@@ -116,15 +116,22 @@ def _cpu_lines() -> list[str]:
     return path.read_text().splitlines() if path.exists() else []
 
 
-def report(rows: list[Row], path: Path) -> None:
-    """Print a table, and write the same as JSON."""
-    print(f"{'benchmark':34} {'what':30} {'run s':>10} {'ratio':>9}  facts")
+def heading() -> None:
+    """Print the line above the rows."""
+    print(f"{'benchmark':34} {'what':30} {'run s':>10} {'ratio':>9}  facts", flush=True)
+
+
+def show(rows: list[Row]) -> None:
+    """Print rows of the table."""
     for row in rows:
         facts = ", ".join(
             f"{k} {v:.4g}" if isinstance(v, float) else f"{k} {v}" for k, v in row.facts.items()
         )
-        print(f"{row.benchmark:34} {row.name:30} {row.median:10.3f} {row.ratio:9.3f}  {facts}")
+        print(f"{row.benchmark:34} {row.name:30} {row.median:10.3f} {row.ratio:9.3f}  {facts}", flush=True)
+
+
+def write(rows: list[Row], path: Path) -> None:
+    """Write all rows as JSON, with the machine."""
     path.parent.mkdir(parents=True, exist_ok=True)
     document = {"machine": machine(), "rows": [{**asdict(row), "median": row.median} for row in rows]}
     path.write_text(json.dumps(document, indent=2) + "\n")
-    print(f"Written to {path}")
