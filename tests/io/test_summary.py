@@ -3,7 +3,7 @@
 import io
 import json
 import re
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -364,3 +364,18 @@ def test_printed_lines_are_plain_in_a_pipe_and_colored_on_a_terminal():
     print_summary(content, Console(file=terminal, force_terminal=True, color_system="standard"))
     assert pipe.getvalue().splitlines() == summary_lines(content)
     assert "\x1b[32mpass\x1b[0m" in terminal.getvalue()
+
+
+def test_nothing_is_checked_before_the_first_step(example):
+    """A run that fails at once has the start alone: no check of it may say pass."""
+    crossing, whole = example
+    n_time = len(whole.time)
+    kept = {
+        field.name: value[:1]
+        for field in fields(whole)
+        if isinstance(value := getattr(whole, field.name), np.ndarray) and len(value) == n_time
+    }
+    started = replace(whole, **kept, outcome=Outcome("failed", "step 1: it failed"))
+    found = summary(started, crossing)
+    assert {check["verdict"] for check in found["checks"]} == {"not checked"}
+    assert found["verdict"] == "attention"
