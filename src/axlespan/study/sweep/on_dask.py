@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import asyncio
 import importlib
 import logging
 import platform
 import time
 import warnings
 from collections.abc import Iterable, Iterator
+from concurrent.futures import CancelledError
 from contextlib import contextmanager, suppress
 from typing import Any, Final
 
@@ -71,15 +73,15 @@ class OnDask:
                 self.workers = max(1, _count(self._client))
 
     def _outcome(self, future: Any, task: Task) -> Done | Lost:
-        if future.status == "finished":
-            try:
+        try:
+            if future.status == "finished":
                 done: Done = future.result()
-            except OSError as lost:  # of Dask: the connection, while the result came over
-                raise ConnectionError("the scheduler is gone") from lost
-            return done
-        if future.status in ("cancelled", "lost") or self._client.status != "running":
+                return done
+            error = None if future.status in ("cancelled", "lost") else future.exception()
+        except (OSError, CancelledError, asyncio.CancelledError) as lost:  # while the answer came over
+            raise ConnectionError("the scheduler is gone") from lost
+        if error is None or self._client.status != "running":
             raise ConnectionError("the scheduler is gone")
-        error = future.exception()
         return Lost(task.number, task.ids, " ".join(str(error).split())[:300] or type(error).__name__)
 
 
