@@ -214,7 +214,8 @@ def _no_sum_in_a_sum(raw: Any) -> Any:
     return _TERM.checked(raw)
 
 
-_Term = Annotated[
+# All kinds that are no collections of others.
+_Single = (
     Annotated[NoIrregularity, tag("none")]
     | Annotated[HarmonicIrregularity, tag("harmonic")]
     | Annotated[TableIrregularity, tag("table")]
@@ -224,7 +225,10 @@ _Term = Annotated[
     | Annotated[DippedJointIrregularity, tag("dipped-joint")]
     | Annotated[SquatIrregularity, tag("squat")]
     | Annotated[PotholeIrregularity, tag("pothole")]
-    | Annotated[SettlementIrregularity, tag("settlement")],
+    | Annotated[SettlementIrregularity, tag("settlement")]
+)
+_Term = Annotated[
+    _Single,
     _TERM.discriminator(),
     BeforeValidator(_no_sum_in_a_sum),
 ]
@@ -259,17 +263,7 @@ class SumIrregularity(Part):
 
 _ONE = Kinds("irregularity", (*_SINGLE, "sum"), _EXAMPLE, words_alone=("none",))
 _OfOneLine = Annotated[
-    Annotated[NoIrregularity, tag("none")]
-    | Annotated[HarmonicIrregularity, tag("harmonic")]
-    | Annotated[TableIrregularity, tag("table")]
-    | Annotated[SpectrumIrregularity, tag("spectrum")]
-    | Annotated[BumpIrregularity, tag("bump")]
-    | Annotated[RampIrregularity, tag("ramp")]
-    | Annotated[DippedJointIrregularity, tag("dipped-joint")]
-    | Annotated[SquatIrregularity, tag("squat")]
-    | Annotated[PotholeIrregularity, tag("pothole")]
-    | Annotated[SettlementIrregularity, tag("settlement")]
-    | Annotated[SumIrregularity, tag("sum")],
+    _Single | Annotated[SumIrregularity, tag("sum")],
     _ONE.discriminator(),
     BeforeValidator(_ONE.checked),
 ]
@@ -306,18 +300,7 @@ class LinesIrregularity(Part):
 
 KINDS = Kinds("irregularity", (*_SINGLE, "sum", "lines"), _EXAMPLE, words_alone=("none",))
 Irregularity = Annotated[
-    Annotated[NoIrregularity, tag("none")]
-    | Annotated[HarmonicIrregularity, tag("harmonic")]
-    | Annotated[TableIrregularity, tag("table")]
-    | Annotated[SpectrumIrregularity, tag("spectrum")]
-    | Annotated[BumpIrregularity, tag("bump")]
-    | Annotated[RampIrregularity, tag("ramp")]
-    | Annotated[DippedJointIrregularity, tag("dipped-joint")]
-    | Annotated[SquatIrregularity, tag("squat")]
-    | Annotated[PotholeIrregularity, tag("pothole")]
-    | Annotated[SettlementIrregularity, tag("settlement")]
-    | Annotated[SumIrregularity, tag("sum")]
-    | Annotated[LinesIrregularity, tag("lines")],
+    _Single | Annotated[SumIrregularity, tag("sum")] | Annotated[LinesIrregularity, tag("lines")],
     KINDS.discriminator(),
     BeforeValidator(KINDS.checked),
 ]
