@@ -211,7 +211,9 @@ class TestRunsThatFail:
         early = simulate(
             self.HEAVY, time_step=2e-4, steps=n - 50, method=Alpha(0.0), footprint=0.0, sensors={"m": 12.5}
         )
-        np.testing.assert_array_equal(result.sensor_displacement[: n - 49], early.sensor_displacement)
+        np.testing.assert_allclose(
+            result.sensor_displacement[: n - 49], early.sensor_displacement, rtol=1e-12, atol=1e-15
+        )
         assert result.checks["finite_values"] is False
         assert result.checks["largest_contact_force"]["1.1"] == pytest.approx(result.contact_force.max())
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import scipy.sparse as sp
 
 from axlespan.bridges import ballasted_track, simple_span, with_track
 from axlespan.dynamics.alpha import Alpha
@@ -73,16 +74,56 @@ def test_same_numbers(structure, tolerance, alpha, count, monkeypatch):
 
 
 def test_an_indefinite_contact_system_is_refused():
-    """The small Cholesky factorization says so, and solves what is definite."""
-    from axlespan.interaction.fused.kernel import solve_small
+    """The small factorization says so, and solves what is definite within the reach of its rows."""
+    from axlespan.interaction.fused.contact_kernel import solve_system
 
     rng = np.random.default_rng(3)
-    half = rng.standard_normal((7, 7))
-    matrix, right = half @ half.T + np.eye(7), rng.standard_normal(7)
+    half = rng.standard_normal((9, 9))
+    matrix, right = half @ half.T + 20.0 * np.eye(9), rng.standard_normal(9)
+    matrix[:3, 5:], matrix[5:, :3] = 0.0, 0.0
+    matrix[0, 4] = matrix[4, 0] = matrix[0, 2] = matrix[2, 0] = 0.0
+    reach = np.array([int(np.flatnonzero(row).max()) for row in matrix])
     x = right.copy()
-    assert solve_small(matrix.copy(), 7, x)
+    assert solve_system(matrix.copy(), reach.copy(), 9, x)
     np.testing.assert_allclose(matrix @ x, right, atol=1e-12)
-    matrix[4, 4] = -1.0
-    assert not solve_small(matrix.copy(), 7, right.copy())
-    matrix[4, 4] = np.nan
-    assert not solve_small(matrix.copy(), 7, right.copy())
+    for wrong in (-100.0, np.nan):
+        matrix[4, 4] = wrong
+        assert not solve_system(matrix.copy(), reach.copy(), 9, right.copy())
+
+
+@pytest.mark.parametrize("spread", [1, 9])
+def test_contact_systems_are_those_of_plain_numpy(spread):
+    """Rows close together on the path and far apart, at its ends, wheels off the structure, two vehicles."""
+    from axlespan.interaction.fused.banded_body import csr_parts
+    from axlespan.interaction.fused.contact_kernel import fill_system, pack_rows, room_for
+
+    rng = np.random.default_rng(spread)
+    n, width, lanes = 60, 31, 4
+    full = rng.standard_normal((n, n))
+    full = full + full.T
+    full[np.abs(np.subtract.outer(np.arange(n), np.arange(n))) > 12] = 0.0
+    offset = np.clip(np.arange(n) - 15, 0, n - width)
+    Z = np.array([full[i, begin : begin + width] for i, begin in enumerate(offset)])
+    low, high = np.maximum(np.arange(n) - 12, 0), np.minimum(np.arange(n) + 13, n)
+    rows = rng.permutation(n)  # of the body, at path places
+    row_of = np.empty(n, dtype=np.int64)
+    row_of[rows] = np.arange(n)
+    E, place, weights = np.zeros((5, n)), np.zeros((5, 4), dtype=np.int64), np.zeros((5, 4))
+    for wheel, begin in enumerate((0, 6, 14, 22, n - 1 - 3 * spread)):
+        if wheel == 2:
+            continue  # off the structure
+        at = begin + spread * np.arange(4)
+        weights[wheel] = rng.standard_normal(4)
+        E[wheel, at], place[wheel] = weights[wheel], rows[at] * lanes + 1
+    vehicles = np.zeros((7, 7))
+    vehicles[1:4, 1:4], vehicles[4:7, 4:7] = 3.0 * np.eye(3) + 0.5, 2.0 * np.eye(3) + 0.25
+    own, at = np.arange(1, 7), np.array([0, 1, 2, 4, 5])
+    room, S, reach = room_for(5, 4), np.full((6, 6), np.nan), np.zeros(6, dtype=np.int64)
+    path = (row_of, offset, low, high, Z.reshape(-1), width)
+    pack_rows((0,) * lanes, place, weights, path, room)
+    fill_system((0, 5), at, own, csr_parts(sp.csr_array(vehicles)), path, room, S, reach)
+    wanted = vehicles[1:, 1:].copy()
+    wanted[np.ix_(at, at)] += E @ full @ E.T
+    upper = np.triu_indices(6)
+    np.testing.assert_allclose(S[upper], wanted[upper], atol=1e-12)
+    assert all(reach >= [int(np.flatnonzero(row).max()) for row in np.triu(wanted)])

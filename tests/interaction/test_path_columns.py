@@ -75,3 +75,85 @@ def test_alike_without_numba(monkeypatch):
         columns.hold(dofs[weights != 0.0])
         results.append(path_compliance(columns, columns.position[dofs], weights))
     assert np.abs(results[1] - results[0]).max() <= 1e-14 * np.abs(results[0]).max()
+
+
+def response_of(columns, load):
+    full = np.zeros(columns.integrator.size)
+    full[columns.held] = -columns.integrator.weight_c * load
+    return np.linalg.solve(columns.integrator.effective.toarray(), full)
+
+
+@pytest.mark.parametrize("numba", [True, False])
+def test_whole_columns_are_kept_as_memory_allows(numba, monkeypatch):
+    """A train goes along the path: with room no column is computed twice, without the oldest ones make place."""
+    if not numba:
+        monkeypatch.setattr("axlespan.interaction.path_kernel._compiled_rows", lambda: None)
+    integrator = chain(np.full(N + 1, 50.0))
+    path, rng = np.arange(0, N, 5), np.random.default_rng(9)
+    asked = []
+    columns_of = integrator.columns
+
+    def counted(dofs, *more):
+        asked.extend(dofs.tolist())
+        return columns_of(dofs, *more)
+
+    monkeypatch.setattr(integrator, "columns", counted)
+    for room in (len(path), 150):
+        monkeypatch.setattr("axlespan.interaction.path_columns._KEPT", 8.0 * N * room)
+        columns = PathColumns(integrator, path, 1)
+        asked.clear()
+        for head in (0, 4, 8, 200, 210, 0, 410):
+            needed = path[head : head + 40]
+            columns.hold(rng.permutation(np.repeat(needed, 2)))
+            assert not columns.solves_again
+            assert np.all(np.isin(needed, columns.held))
+            assert np.all(np.diff(columns.held) > 0)
+            assert np.array_equal(columns.held[columns.position[needed]], needed)
+            assert len(columns.held) <= room
+            Z = np.linalg.inv(integrator.effective.toarray())[np.ix_(columns.held, columns.held)]
+            Z *= integrator.weight_c * integrator.u_from_a
+            np.testing.assert_allclose(columns.compliance, Z, rtol=0.0, atol=1e-14 * Z.max())
+            for shape in ((), (3,)):
+                load = np.zeros((len(columns.held), *shape))
+                load[columns.position[needed]] = rng.standard_normal((len(needed), *shape))
+                expected = response_of(columns, load)
+                np.testing.assert_allclose(
+                    columns.response(load), expected, rtol=0.0, atol=1e-14 * np.abs(expected).max()
+                )
+        if room == len(path):
+            assert len(asked) == len(set(asked))
+            assert columns.nbytes >= 8 * N * len(columns.held)
+        else:  # the first ones were dropped while the train was far away
+            assert asked.count(0) == 2
+
+
+def test_a_short_path_has_all_its_columns_at_once():
+    """And columns that are missed later come with their neighbors."""
+    integrator = chain(np.full(N + 1, 50.0))
+    short = PathColumns(integrator, np.arange(0, 500, 5), 1)
+    short.hold(np.array([50, 55]))
+    assert np.array_equal(short.held, np.arange(0, 500, 5))
+    path = np.arange(0, N, 5)
+    long = PathColumns(integrator, path, 1)
+    long.hold(path[[20, 21]])
+    assert np.array_equal(long.held, path[[20, 21]])
+    long.hold(path[[100, 300]])
+    new = np.setdiff1d(long.held, path[[20, 21]]) // 5
+    assert len(new) == 64
+    assert np.minimum(np.abs(new - 100), np.abs(new - 300)).max() <= 16
+
+
+def test_a_small_model_keeps_no_idle_columns():
+    """Each step passes all of them."""
+    stiffness = np.full(41, 50.0)
+    K = sp.diags_array(
+        [-stiffness[1:-1], stiffness[:-1] + stiffness[1:], -stiffness[1:-1]], offsets=[-1, 0, 1]
+    )
+    integrator = Integrator(Matrices(sp.csr_array(K), sp.csr_array(sp.eye_array(40))), Alpha(0.0), 0.05)
+    columns = PathColumns(integrator, np.arange(40), 4)
+    for first in (0, 10, 30):
+        columns.hold(np.arange(first, first + 4))
+        assert len(columns.held) <= 6
+        load = np.zeros(len(columns.held))
+        load[columns.position[first]] = 2.0
+        np.testing.assert_allclose(columns.response(load), response_of(columns, load), rtol=1e-12)

@@ -279,3 +279,28 @@ class TestErrors:
             structure.line("trak 1")
         with pytest.raises(InputError, match="must have at least one running line"):
             Structure(system, {})
+
+
+def test_compiled_rows_and_loads_are_those_of_plain_numpy() -> None:
+    rng = np.random.default_rng(7)
+    breaks = np.concatenate([[0.0], np.cumsum(rng.uniform(0.01, 3.0, 40))])  # far from even segments
+    dofs, coefficients = rng.integers(0, 30, (40, 4)), rng.standard_normal((40, 4, 5))
+    coefficients[10:15] = 0.0
+    path = PolynomialPath(breaks, dofs, coefficients)
+    positions = rng.uniform(-5.0, breaks[-1] + 5.0, (300, 6))
+    positions[:41, 2], positions[0, 0] = breaks, np.nan  # right over every break, both ends included
+    contacts, slots = np.array([0, 2, 5]), np.array([2, 0, 1])
+    own, weights = np.zeros((300, 3, 4), dtype=np.int64), np.zeros((300, 3, 4))
+    path.fill_rows(positions, contacts, slots, own, weights)
+    expected_dofs, expected = path.weights(positions[:, contacts])
+    on = path.carries(positions[:, contacts])
+    assert 100 < on.sum() < on.size
+    np.testing.assert_allclose(weights[:, slots], expected, rtol=1e-14, atol=1e-14)
+    np.testing.assert_array_equal(own[:, slots][on], expected_dofs[on])
+    forces, loads = rng.standard_normal((300, 6)), np.zeros((300, 30))
+    for step, wheel in zip(*np.nonzero(on), strict=True):
+        place = expected_dofs[step, wheel]
+        np.add.at(loads[step], place, expected[step, wheel] * forces[step, contacts[wheel]])
+    np.testing.assert_allclose(path.loads(positions, forces, contacts, 30), loads, rtol=1e-12, atol=1e-12)
+    few = path.loads(positions[:5], forces[:5], contacts, 30)  # too few for the compiled loop
+    np.testing.assert_allclose(few, loads[:5], rtol=1e-12, atol=1e-12)

@@ -135,6 +135,7 @@ def _run(study: Study, trial: Trial, folder: Path, wanted: Wanted) -> int:
                 scheduler=wanted.scheduler,
                 resume=wanted.resume,
                 progress=counter,
+                under_way=counter.under_way,
                 trial=trial,
                 free=free_memory(),
             )
@@ -157,6 +158,8 @@ def _goes_on(study: Study, folder: Path) -> str:
 
 
 def _told(study: Study, folder: Path, outcome: RunOutcome, wanted: Wanted) -> int:
+    for line in outcome.mended:
+        warn(f"{folder}: {line}")
     answers = study.answers(folder)
     for line in answers.lines():
         say(line)
@@ -256,10 +259,23 @@ class _Counter:
 
     total: int
     shown: Any = field(default=None, repr=False)
+    done: int = 0
+    failed: int = 0
+    share: float = 0.0  # scenarios' worth of steps in batches that are not done
 
     def __call__(self, done: int, failed: int, total: int) -> None:
+        self.done, self.failed = done, failed
+        self._show()
+
+    def under_way(self, share: float) -> None:
+        """Count what is made within batches; it falls where one is done, and then that is counted."""
+        grown, self.share = share > self.share, share
+        if grown:
+            self._show()
+
+    def _show(self) -> None:
         if self.shown is not None:
-            self.shown(done, failed)
+            self.shown(self.done, self.failed, self.share)
 
 
 @contextmanager
@@ -278,22 +294,23 @@ def _progress(counter: _Counter, title: str) -> Iterator[None]:
     columns = (
         TextColumn("{task.description}", markup=False),
         BarColumn(bar_width=24),
-        TextColumn("{task.completed:.0f}/{task.total:.0f} done", markup=False),
+        TextColumn("{task.fields[done]}/{task.total:.0f} done", markup=False),
         TextColumn("{task.fields[failed]} failed", markup=False),
         TextColumn("{task.fields[rate]}", markup=False),
         TimeRemainingColumn(),
         TextColumn("left"),
     )
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(title[:40], total=counter.total, failed=0, rate="")
-        begun, first = time.monotonic(), -1
+        task = bar.add_task(title[:40], total=counter.total, done=0, failed=0, rate="")
+        begun, first = time.monotonic(), -1.0
 
-        def show(done: int, failed: int) -> None:
+        def show(done: int, failed: int, share: float) -> None:
             nonlocal first
-            first = done if first < 0 else first
+            made = done + share
+            first = made if first < 0 else first
             passed = time.monotonic() - begun
-            rate = f"{(done - first) / passed:,.3g}/s" if passed > 1.0 and done > first else ""
-            bar.update(task, completed=done, failed=failed, rate=rate)
+            rate = f"{(made - first) / passed:,.3g}/s" if passed > 1.0 and made > first else ""
+            bar.update(task, completed=made, done=done, failed=failed, rate=rate)
 
         counter.shown = show
         yield
@@ -304,17 +321,17 @@ class _Lines:
 
     def __init__(self, total: int) -> None:
         self._total, self._begun, self._last = total, time.monotonic(), time.monotonic()
-        self._first: int | None = None
+        self._first: float | None = None
 
-    def __call__(self, done: int, failed: int) -> None:
-        now = time.monotonic()
+    def __call__(self, done: int, failed: int, share: float) -> None:
+        now, made = time.monotonic(), done + share
         if self._first is None:
-            self._first = done
+            self._first = made
         if now - self._last < _PAUSE or done >= self._total:
             return
         self._last = now
-        rate = max(done - self._first, 1) / (now - self._begun)
-        left = (self._total - done) / rate
+        rate = max(made - self._first, 1e-3) / (now - self._begun)
+        left = (self._total - made) / rate
         warn(
             f"{done} of {self._total} done, {failed} failed, {rate:.3g} a second, about {_duration(left)} left"
         )

@@ -102,11 +102,9 @@ class TrainRows:
         )
         for path in self.paths:
             here = np.flatnonzero(np.isin(wheels, path.wheels))
-            dofs, weights = path.free.weights(positions[:, here], derivative)
-            block.dofs[:, here, : dofs.shape[2]] = dofs
-            block.weights[:, here, : dofs.shape[2]] = weights
+            path.free.fill_rows(positions, here, here, block.dofs, block.weights, derivative)
             if path.prescribed is not None:
-                dofs, weights = path.prescribed.weights(positions[:, here], derivative)
-                block.prescribed_dofs[:, here, : dofs.shape[2]] = dofs
-                block.prescribed_weights[:, here, : dofs.shape[2]] = weights
+                path.prescribed.fill_rows(
+                    positions, here, here, block.prescribed_dofs, block.prescribed_weights, derivative
+                )
         return block

@@ -14,6 +14,7 @@ there is any) for every α.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -26,9 +27,13 @@ from axlespan.linalg.factor import Factor, factorize
 from axlespan.linalg.low_rank import LowRank, UpdatedFactor
 
 FloatArray = npt.NDArray[np.float64]
+IndexArray = npt.NDArray[np.uint32]
 
 # Below this size a dense product is quicker than a sparse one.
 _DENSE_UP_TO = 200
+
+# Memory [byte] of the right-hand sides that are solved for together.
+_AT_ONCE = 40e6
 
 
 @dataclass(eq=False)
@@ -154,6 +159,20 @@ class Integrator:
         """Number of d.o.f."""
         return self.matrices.size
 
+    @cached_property
+    def halves(self) -> list[tuple[IndexArray | FloatArray, ...]]:
+        """K and C as the loop for one body wants them: the diagonal, and row starts, columns, entries above it."""
+        parts: list[tuple[IndexArray | FloatArray, ...]] = []
+        for matrix in (self.matrices.K, self.matrices.C):
+            diagonal = np.zeros(self.size) if matrix is None else matrix.diagonal()
+            parts.append((diagonal, *_parts(None if matrix is None else _above_diagonal(matrix), self.size)))
+        return parts
+
+    @cached_property
+    def wholes(self) -> list[tuple[IndexArray | FloatArray, ...]]:
+        """K and C as the loop for many bodies wants them: row starts, columns, entries."""
+        return [_parts(self.matrices.K, self.size), _parts(self.matrices.C, self.size)]
+
     def _effective_matrix(self) -> sp.csr_array:
         m = self.matrices
         effective = m.M + (self.weight_c * self.u_from_a) * m.K
@@ -198,14 +217,24 @@ class Integrator:
         stepper.finish()
         return stepper.state
 
-    def columns(self, dofs: npt.NDArray[np.int64]) -> FloatArray:
-        """Columns of A⁻¹ (m, n) at d.o.f. (m,), each in one piece; a few are solved for at a time."""
-        result = np.empty((len(dofs), self.size))
-        for begin in range(0, len(dofs), 64):
-            some = dofs[begin : begin + 64]
-            loads = np.zeros((self.size, len(some)))
-            loads[some, np.arange(len(some))] = 1.0
-            result[begin : begin + len(some)] = self.factor.solve(loads).T
+    def columns(
+        self,
+        dofs: npt.NDArray[np.int64],
+        out: FloatArray | None = None,
+        rows: npt.NDArray[np.int64] | None = None,
+    ) -> FloatArray:
+        """Columns of A⁻¹ (m, n) at d.o.f. (m,), each in one piece; as many are solved for at a time as memory allows.
+
+        With ``out``, they are written to these ``rows`` of it.
+        """
+        result = np.empty((len(dofs), self.size)) if out is None else out
+        places = np.arange(len(dofs)) if rows is None else rows
+        at_once = int(np.clip(_AT_ONCE / (8 * max(self.size, 1)), 16, 128))
+        for begin in range(0, len(dofs), at_once):
+            some = slice(begin, begin + at_once)
+            loads = np.zeros((self.size, len(dofs[some])))
+            loads[dofs[some], np.arange(loads.shape[1])] = 1.0
+            result[places[some]] = self.factor.solve(loads, out=loads).T
         return result
 
 
@@ -246,10 +275,11 @@ class Stepper:
             self._stacked = self._work.reshape(width, *shape[1:])
             self._forceless = np.ascontiguousarray(self._dense[:, : width - integrator.size])
         else:
-            self._right_side = compiled_right_side(len(shape) == 1 or shape[1] == 1)
+            single = len(shape) == 1 or shape[1] == 1
+            self._right_side = compiled_right_side(single)
             self._use_compiled_completion()
-            m = integrator.matrices
-            self._sparse = [_parts(m.K, m.size), _parts(m.C, m.size)]
+            self._sparse = integrator.halves if single else integrator.wholes
+            self._view = (-1,) if single else (integrator.size, -1)  # of a row, as the loop wants it
 
     def _use_compiled_completion(self) -> None:
         self._complete = compiled_completion()
@@ -259,8 +289,8 @@ class Stepper:
         self._done = False
         integrator, values = self.integrator, self.state.values
         if self._right_side is not None:
-            n, damped = integrator.size, integrator.has_damping
-            work, state = self._work.reshape(len(self._work), n, -1), values.reshape(3, n, -1)
+            damped = integrator.has_damping
+            work, state = self._work.reshape(len(self._work), *self._view), values.reshape(3, *self._view)
             self._right_side(integrator.prediction, state, *self._sparse, damped, not forceless, work)
         else:
             np.matmul(self._means, values.reshape(3, -1), out=self._rows)
@@ -355,9 +385,14 @@ def _operand(matrix: sp.csr_array) -> FloatArray | sp.csr_array:
     return np.ascontiguousarray(matrix.toarray()) if matrix.shape[0] <= _DENSE_UP_TO else matrix
 
 
-def _parts(
-    matrix: sp.csr_array | None, n: int
-) -> tuple[npt.NDArray[np.uint32], npt.NDArray[np.uint32], FloatArray]:
+def _above_diagonal(matrix: sp.csr_array) -> sp.csr_array:
+    rows = np.repeat(np.arange(matrix.shape[0], dtype=matrix.indices.dtype), np.diff(matrix.indptr))
+    above = matrix.indices > rows
+    ends = np.concatenate([[0], np.cumsum(above)])[matrix.indptr]
+    return sp.csr_array((matrix.data[above], matrix.indices[above], ends), shape=matrix.shape)
+
+
+def _parts(matrix: sp.csr_array | None, n: int) -> tuple[IndexArray, IndexArray, FloatArray]:
     """Row starts, columns and entries; of an empty matrix (n, n) for None. Unsigned: see the band kernel."""
     if matrix is None:
         return np.zeros(n + 1, dtype=np.uint32), np.zeros(0, dtype=np.uint32), np.zeros(0)

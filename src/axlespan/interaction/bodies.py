@@ -66,8 +66,9 @@ class PreparedStructure:
         """Forces (n,) or (n, k) in the coordinates of the state."""
         return vectors
 
-    def reading(self, dofs: IntArray) -> FloatArray | None:
-        """How displacements of d.o.f. follow from the coordinates of the state; None: they are among them."""
+    @property
+    def shapes(self) -> FloatArray | None:
+        """All d.o.f. (n, m) from m coordinates of the state; None: the state holds the d.o.f."""
         return None
 
 

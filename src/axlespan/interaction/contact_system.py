@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -22,6 +23,7 @@ from axlespan.interaction.bodies import FleetBody, StructureBody
 from axlespan.interaction.path_columns import PathColumns
 from axlespan.interaction.path_kernel import compiled_sandwich
 from axlespan.interaction.plan import Plan
+from axlespan.running.path import mark_used
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -52,7 +54,13 @@ class Rows:
 
 
 def rows_of(plan: Plan, steps: IntArray) -> Rows:
-    """The contact rows of a crossing at consecutive time indices."""
+    """The contact rows of a crossing at consecutive time indices.
+
+    Behind its last step a train stands where it ended; one that has stood so from the first step on is not there.
+    """
+    if steps[0] > plan.settings.steps:
+        return _nothing(plan, len(steps))
+    steps = np.minimum(steps, plan.settings.steps)
     times = plan.times_of(steps)
     positions = plan.rows.positions(times)
     live = np.flatnonzero(plan.rows.on_structure(positions).any(axis=0))
@@ -61,6 +69,12 @@ def rows_of(plan: Plan, steps: IntArray) -> Rows:
     rank[plan.fleet.coupled] = np.arange(len(plan.fleet.coupled))
     gap = _gap(plan, times, positions, block, rank[live])
     return Rows(positions, live, block.dofs, block.weights, gap, rank[live])
+
+
+def _nothing(plan: Plan, n_step: int) -> Rows:
+    none = np.empty(0, dtype=np.int64)
+    empty, gap = np.empty((n_step, 0, 1)), np.zeros((n_step, len(plan.fleet.coupled)))
+    return Rows(np.zeros((n_step, plan.rows.n_contact)), none, empty.astype(np.int64), empty, gap, none)
 
 
 def _gap(plan: Plan, times: FloatArray, positions: FloatArray, block: RowBlock, rank: IntArray) -> FloatArray:
@@ -84,27 +98,110 @@ class System:
 
 
 @dataclass(frozen=True, eq=False)
+class WheelRows:
+    """Rows of wheels of several crossings side by side, in arrays of one width."""
+
+    names: IntArray  # (n_wheel,) places among the coupled contacts, or the contacts, of the joint fleet
+    flat: IntArray  # (n_step, n_wheel, n_local) places in the structure's state
+    held: IntArray  # the same, in loads on the held d.o.f.
+    weights: FloatArray  # (n_step, n_wheel, n_local)
+
+
+@dataclass(frozen=True, eq=False)
 class Stretch:
     """Consecutive steps of one or several crossings that advance side by side."""
 
     first: int  # time index of the first step
     n_step: int
     crossings: Sequence[Rows]
-    flat: IntArray  # (n_step, n_coupled_live, n_local) places in the structure's state
-    held: IntArray  # the same, in loads on the held d.o.f.
-    weights: FloatArray  # (n_step, n_coupled_live, n_local)
-    into: IntArray  # (n_coupled_live,) places among the coupled contacts of the joint fleet
     gap: FloatArray  # (n_step, n_coupled) of the joint fleet [m]
     systems: Sequence[System]
-    forced: IntArray  # (n_forced_live,) contacts of the joint fleet that are moving forces
-    forced_flat: IntArray  # (n_step, n_forced_live, n_local)
-    forced_held: IntArray  # the same, in loads on the held d.o.f.
-    forced_weights: FloatArray  # (n_step, n_forced_live, n_local)
+    structure: StructureBody
+    begins: tuple[IntArray, IntArray]  # of the crossings among the coupled contacts, and among all
 
     @property
     def steps(self) -> IntArray:
         """Time indices (n_step,)."""
         return self.first + np.arange(self.n_step)
+
+    @cached_property
+    def into(self) -> IntArray:
+        """Places (n_coupled_live,) of the coupled wheels on the structure among those of the joint fleet."""
+        return self._names(True)
+
+    @cached_property
+    def forced(self) -> IntArray:
+        """Contacts (n_forced_live,) of the joint fleet that are moving forces on the structure."""
+        return self._names(False)
+
+    def _names(self, coupled: bool) -> IntArray:
+        ranks, contacts = self.begins
+        lanes = enumerate(self.crossings)
+        if coupled:
+            parts = [ranks[lane] + rows.rank[rows.rank >= 0] for lane, rows in lanes]
+        else:
+            parts = [contacts[lane] + rows.live[rows.rank < 0] for lane, rows in lanes]
+        return np.concatenate(parts).astype(np.int64)
+
+    def rows(self, coupled: bool, steps: slice = slice(None)) -> WheelRows:
+        """Rows of the coupled wheels, or of the moving forces, at some steps."""
+        names = self.into if coupled else self.forced
+        n_local = max(rows.dofs.shape[2] for rows in self.crossings)
+        shape = (len(range(self.n_step)[steps]), len(names), n_local)
+        flat, held, weights = np.zeros(shape, np.int64), np.zeros(shape, np.int64), np.zeros(shape)
+        lanes, position, filled = self.structure.lanes, self.structure.columns.position, 0
+        for lane, rows in enumerate(self.crossings):
+            which = np.flatnonzero((rows.rank >= 0) == coupled)
+            if not len(which):
+                continue
+            dofs = rows.dofs[steps] if len(which) == len(rows.rank) else rows.dofs[steps, which]
+            here = (slice(None), slice(filled, filled + len(which)), slice(dofs.shape[2]))
+            np.multiply(dofs, lanes, out=flat[here])
+            flat[here] += lane
+            held[here] = (position if lanes == 1 else position * lanes + lane)[dofs]
+            weights[here] = (
+                rows.weights[steps] if len(which) == len(rows.rank) else rows.weights[steps, which]
+            )
+            filled += len(which)
+        return WheelRows(names, flat, held, weights)
+
+    @cached_property
+    def _coupled(self) -> WheelRows:
+        return self.rows(True)
+
+    @cached_property
+    def _forced(self) -> WheelRows:
+        return self.rows(False)
+
+    @property
+    def flat(self) -> IntArray:
+        """Places (n_step, n_coupled_live, n_local) in the structure's state."""
+        return self._coupled.flat
+
+    @property
+    def held(self) -> IntArray:
+        """The same, in loads on the held d.o.f."""
+        return self._coupled.held
+
+    @property
+    def weights(self) -> FloatArray:
+        """Weights (n_step, n_coupled_live, n_local) of the coupled wheels."""
+        return self._coupled.weights
+
+    @property
+    def forced_flat(self) -> IntArray:
+        """Places (n_step, n_forced_live, n_local) of the moving forces."""
+        return self._forced.flat
+
+    @property
+    def forced_held(self) -> IntArray:
+        """The same, in loads on the held d.o.f."""
+        return self._forced.held
+
+    @property
+    def forced_weights(self) -> FloatArray:
+        """Weights (n_step, n_forced_live, n_local) of the moving forces."""
+        return self._forced.weights
 
 
 def stretch_of(
@@ -120,65 +217,22 @@ def stretch_of(
 
     The columns of A⁻¹ under the wheels are made available; ``systems=False`` leaves out the contact systems.
     """
-    crossings = [rows_of(plan, first + np.arange(n_step)) for plan in plans]
-    columns = structure.columns
-    columns.hold(np.concatenate([rows.dofs[rows.weights != 0.0] for rows in crossings]))
-    contacts = _offsets([plan.rows.n_contact for plan in plans])
+    steps = first + np.arange(n_step)
+    crossings = [rows_of(plan, steps) for plan in plans]
+    mark = np.zeros(len(structure.columns.position), dtype=bool)  # of a reduced structure too
+    for rows in crossings:
+        mark_used(rows.dofs, rows.weights, mark)
+    structure.columns.hold(np.flatnonzero(mark))
     ranks = _offsets([len(plan.fleet.coupled) for plan in plans])
-    n_local = max(rows.dofs.shape[2] for rows in crossings)
-    n_coupled = [len(rows.active) for rows in crossings]
-    n_forced = sum(len(rows.rank) for rows in crossings) - sum(n_coupled)
-    coupled, forced = _Wheels(n_step, sum(n_coupled), n_local), _Wheels(n_step, n_forced, n_local)
     parts = []
-    for lane, rows in enumerate(crossings):
-        is_coupled = rows.rank >= 0
-        coupled.append(rows, is_coupled, ranks[lane] + rows.rank[is_coupled], lane, structure)
-        forced.append(rows, ~is_coupled, contacts[lane] + rows.live[~is_coupled], lane, structure)
-        if systems and fleet is not None and len(rows.active):
-            parts.append(_system(rows, int(ranks[lane]), structure, fleet))
-    gap = np.concatenate([rows.gap for rows in crossings], axis=1)
-    return Stretch(
-        first,
-        n_step,
-        crossings,
-        coupled.flat,
-        coupled.held,
-        coupled.weights,
-        coupled.names,
-        gap,
-        parts,
-        forced.names,
-        forced.flat,
-        forced.held,
-        forced.weights,
-    )
-
-
-class _Wheels:
-    """Rows of wheels from several crossings, gathered into arrays of one width."""
-
-    def __init__(self, n_step: int, n_wheel: int, n_local: int) -> None:
-        shape = (n_step, n_wheel, n_local)
-        self.flat, self.held = np.zeros(shape, dtype=np.int64), np.zeros(shape, dtype=np.int64)
-        self.weights, self.names = np.zeros(shape), np.empty(n_wheel, dtype=np.int64)
-        self._filled = 0
-
-    def append(
-        self, rows: Rows, which: npt.NDArray[np.bool_], names: IntArray, lane: int, structure: StructureBody
-    ) -> None:
-        """Add some wheels of one crossing."""
-        all_of_them = bool(which.all())
-        dofs = rows.dofs if all_of_them else rows.dofs[:, which]
-        n_wheel, n_local = dofs.shape[1:]
-        here = (slice(None), slice(self._filled, self._filled + n_wheel), slice(n_local))
-        lanes = structure.lanes
-        np.multiply(dofs, lanes, out=self.flat[here])
-        self.flat[here] += lane
-        places = structure.columns.position if lanes == 1 else structure.columns.position * lanes + lane
-        self.held[here] = places[dofs]
-        self.weights[here] = rows.weights if all_of_them else rows.weights[:, which]
-        self.names[here[1]] = names
-        self._filled += n_wheel
+    if systems and fleet is not None:
+        for lane, rows in enumerate(crossings):
+            if len(rows.active):
+                parts.append(_system(rows, int(ranks[lane]), structure, fleet))
+    # In one order in memory, whatever comes in: loops are compiled for that.
+    gap = np.ascontiguousarray(np.concatenate([rows.gap for rows in crossings], axis=1))
+    contacts = _offsets([plan.rows.n_contact for plan in plans])
+    return Stretch(first, n_step, crossings, gap, parts, structure, (ranks, contacts))
 
 
 def _offsets(sizes: Sequence[int]) -> IntArray:

@@ -30,6 +30,9 @@ IntArray = npt.NDArray[np.int64]
 # Steps of a stretch, and the entries of contact systems that one may hold.
 _STRETCH, _ENTRIES = 256, 12_000_000
 
+# Lanes at their ends go along until they are so large a share.
+_IDLE = 0.25
+
 # There is something to tell about every half a second; what a step takes for each byte of the factor [s].
 _NEWS, _PER_BYTE = 0.5, 2e-10
 
@@ -82,22 +85,24 @@ class Convoy:
             forces = np.concatenate([lane.forces for lane in lanes])[self.joint.coupled]
             self.fleet = FleetBody(self.joint, settings.method, settings.time_step, State(values), forces)
         dofs = np.unique(np.concatenate([lane.recorder.selected for lane in lanes]))
-        sums = [(prepared.project(vector), which) for vector, which in lanes[0].recorder.balance.sums]
-        watched = Watched(dofs, prepared.reading(dofs), sums)
+        watched = Watched(dofs, lanes[0].recorder.sums, prepared.shapes)
         self.tape = Tape(watched, len(lanes), self.joint.matrices.size, len(self.joint.weight))
 
-    def stretch(self, *, systems: bool = True) -> Stretch:
-        """The next steps: as many as every lane still has, and as memory allows."""
-        size = sum(plan.rows.n_contact**2 for plan in self.plans)
+    def stretch(self, *, systems: bool = True, idle: bool = False) -> Stretch:
+        """The next steps: as many as memory allows.
+
+        None is behind the end of any lane, unless lanes may be ``idle``: then some lane makes all of them.
+        """
+        size = sum(plan.rows.n_contact**2 for plan in self.plans) if systems else 0
         # Side by side, a crossing costs about a third.
         alone = _PER_BYTE * self.prepared.integrator.factor.nbytes
         seconds = alone * (2 + len(self.lanes)) / 3
         often = int(_NEWS / max(seconds, _NEWS / _STRETCH))
         n_step = max(16, min(_STRETCH, _ENTRIES // max(size, 1), often))
-        n_step = min(n_step, *(lane.left for lane in self.lanes))
-        return stretch_of(
-            self.plans, self.lanes[0].done + 1, n_step, self.structure, self.fleet, systems=systems
-        )
+        left = [lane.left for lane in self.lanes]
+        n_step = min(n_step, max(left) if idle else min(left))
+        first = max(lane.done for lane in self.lanes) + 1
+        return stretch_of(self.plans, first, n_step, self.structure, self.fleet, systems=systems)
 
     def external(self, stretch: Stretch) -> FloatArray | None:
         """Weighted factors (n_step, n_term) of the external forces; None if there are none."""
@@ -135,13 +140,14 @@ class Convoy:
             self.fleet.forces[self.coupled[lane]],
         )
 
-    def contact_at(self, stretch: Stretch, k: int, lane: int) -> tuple[FloatArray, FloatArray]:
-        """Displacements of the wheels of one lane and of the line under them (n_coupled,), after step k."""
+    def contact_at(self, stretch: Stretch, k: int) -> tuple[FloatArray, FloatArray]:
+        """Displacements of all wheels and of the line under them (n_coupled,), after step k."""
         assert self.fleet is not None
         line = stretch.gap[k].copy()
         if len(stretch.into):
-            line[stretch.into] += self.structure.gather(stretch.flat[k], stretch.held[k], stretch.weights[k])
-        return self.fleet.at_wheels()[self.coupled[lane]], line[self.coupled[lane]]
+            rows = stretch.rows(True, slice(k, k + 1))
+            line[stretch.into] += self.structure.gather(rows.flat[0], rows.held[0], rows.weights[0])
+        return self.fleet.at_wheels(), line
 
     def count(self, what: str, number: int) -> None:
         """Count something that a coupling does, for the summary of the first lane."""
@@ -149,13 +155,16 @@ class Convoy:
         counts[what] = counts.get(what, 0) + number
 
     def save(self, n_step: int) -> None:
-        """Put the states of the bodies back into the lanes, after so many steps."""
+        """Put the states of the bodies back into the lanes that are not at their ends, after so many steps."""
         for i, lane in enumerate(self.lanes):
+            own = min(n_step, lane.left)
+            lane.done += own
+            if own < n_step:
+                continue
             lane.structure, lane.load = self.structure.lane(i), self.structure.load_of(i)
             lane.forces = self.tape.last_forces(self.contacts[i])
             if self.fleet is not None:
                 lane.fleet = State(self.fleet.state.values[:, self.vehicle_dofs[i]].copy())
-            lane.done += n_step
 
 
 #: One step of a convoy; returns all contact forces (n_contact,) of the joint fleet.
@@ -164,6 +173,9 @@ Couple = Callable[[Convoy, Stretch, int, FloatArray | None], FloatArray]
 
 class Leap(Protocol):
     """Makes many steps of a convoy at once, as its coupling would one by one."""
+
+    #: Whether a stretch must bring contact systems.
+    needs_systems: bool
 
     def go(self, stretch: Stretch, first: int, stop: int, external: FloatArray | None) -> None:
         """Make steps ``first`` to ``stop`` of a stretch under weighted factors (n_step, n_term), and write the tape."""
@@ -219,22 +231,24 @@ def _drive(
         # As the body holds it: a reduced basis has not all of a start in all d.o.f.
         lane.recorder.begin(convoy.structure.full(i), lane.fleet, lane.forces, lane.load)
     while True:
-        stretch = convoy.stretch(systems=systems)
+        with_systems = systems and (leap is None or leap.needs_systems)
+        stretch = convoy.stretch(systems=with_systems, idle=leap is not None)
         failed = _make(convoy, stretch, couple, leap)
         if failed:
             staying = _without(convoy, failed)
-            if not staying:
-                return
-            convoy, leap = formed(staying)
-            continue
-        convoy.save(stretch.n_step)
-        for i, lane in enumerate(convoy.lanes):
-            lane.recorder.work_up(stretch.steps, stretch.crossings[i].positions, convoy.tape_of(i))
-        if any(lane.left == 0 for lane in convoy.lanes):
+        else:
+            for i, lane in enumerate(convoy.lanes):
+                if own := min(stretch.n_step, lane.left):
+                    tape, positions = convoy.tape_of(i).upto(own), stretch.crossings[i].positions[:own]
+                    lane.recorder.work_up(stretch.steps[:own], positions, tape)
+            convoy.save(stretch.n_step)
             staying = [lane for lane in convoy.lanes if lane.left]
-            if not staying:
-                return
-            convoy, leap = formed(staying)
+        if not staying:
+            return
+        # A few lanes that are at their ends may idle along: forming a convoy anew has its price.
+        idle = len(convoy.lanes) - len(staying)
+        if failed or (idle and (leap is None or idle >= _IDLE * len(convoy.lanes))):
+            convoy, leap = formed([lane for lane in staying if lane.left])
 
 
 def _make(
@@ -245,9 +259,9 @@ def _make(
     watching = [lane.recorder.watchers for lane in convoy.lanes]
     convoy.tape.start(stretch.n_step)
     message: str | None = None
-    looks = [k for k in range(stretch.n_step) if any(one.looks_at(stretch.first + k) for one in watching)]
+    looks = {k for one in watching for k in one.between(stretch.first, stretch.n_step)}
     with np.errstate(over="ignore", invalid="ignore"):
-        for k in range(stretch.n_step) if leap is None else sorted({*looks, stretch.n_step - 1}):
+        for k in range(stretch.n_step) if leap is None else sorted(looks | {stretch.n_step - 1}):
             try:
                 if leap is None:
                     forces = couple(convoy, stretch, k, None if external is None else external[k])
@@ -257,22 +271,28 @@ def _make(
             except AnalysisError as error:
                 message = str(error)
                 break
-            who = [i for i, watchers in enumerate(watching) if watchers.looks_at(stretch.first + k)]
+            who = (
+                [i for i, one in enumerate(watching) if one.looks_at(stretch.first + k)] if k in looks else []
+            )
             if leap is not None:
                 last = k == stretch.n_step - 1
                 leap.show(stretch, k, range(len(watching)) if last else who)
             for i in who:
                 watching[i].look(stretch.first + k, *convoy.moment(i))
-    bad = {i: convoy.lanes[i].recorder.first_bad(convoy.tape_of(i)) for i in range(len(convoy.lanes))}
+    own = {i: min(convoy.tape.filled, lane.left) for i, lane in enumerate(convoy.lanes) if lane.left}
+    bad = {i: convoy.lanes[i].recorder.first_bad(convoy.tape_of(i).upto(n)) for i, n in own.items()}
     found = {i: (k, None) for i, k in bad.items() if k is not None}
     if found:
         earliest = min(k for k, _ in found.values())
         return {i: entry for i, entry in found.items() if entry[0] == earliest}
     if message is not None:
-        return dict.fromkeys(range(len(convoy.lanes)), (convoy.tape.filled, message))
+        cut_off = [i for i in own if convoy.lanes[i].left > convoy.tape.filled] or list(own)
+        return dict.fromkeys(cut_off, (convoy.tape.filled, message))
     if convoy.fleet is not None:
-        for i, lane in enumerate(convoy.lanes):
-            lane.recorder.compatibility.look(*convoy.contact_at(stretch, stretch.n_step - 1, i))
+        wheels, line = convoy.contact_at(stretch, stretch.n_step - 1)
+        for i in own:
+            at = convoy.coupled[i]
+            convoy.lanes[i].recorder.compatibility.look(wheels[at], line[at])
     return {}
 
 

@@ -194,7 +194,7 @@ class Crossing(Shown, Movement):
         if not isinstance(irregularity, Mapping):
             return dict.fromkeys(lines, irregularity)
         own = {self.line_name(name): profile for name, profile in irregularity.items()}
-        return {name: own.get(self.line_name(name), even) for name in lines}
+        return {name: own.get(self.line_name(name), even) for name in dict.fromkeys(lines)}
 
     def line_name(self, name: str) -> str:
         """First name of a line in the structure: one line may have several names, as the rails of a track in the plane."""

@@ -51,7 +51,8 @@ class Groundwork:
             seconds = time.perf_counter() - begun
         made = prepare_reduced(plans, basis) if isinstance(basis, ReducedBasis) else prepare(plans)
         known = basis if isinstance(basis, ReducedBasis) else None
-        return cls(plans[0], path_dofs_of(plans), made, StartFactors(plans[0]), known, seconds)
+        starts = StartFactors(plans[0], made.integrator.factor)
+        return cls(plans[0], path_dofs_of(plans), made, starts, known, seconds)
 
     def serves(self, plans: Sequence[Plan]) -> bool:
         """Whether it is what :meth:`of` would lay for these plans."""

@@ -9,10 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from scipy.linalg.blas import daxpy
 
 from axlespan.dynamics.integrator import Integrator
-from axlespan.interaction.path_kernel import compiled_sandwich, subtract_at
+from axlespan.interaction.path_kernel import compiled_sandwich, subtract_at, weighted_rows
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -20,8 +19,13 @@ IntArray = npt.NDArray[np.int64]
 # Up to this many entries, a product with all columns is quicker than one with a selection.
 _WHOLE_PRODUCT_UP_TO = 100_000
 
-# Columns that no wheel needs any more are dropped when they are more than this share of those held.
+# Whole columns are kept for wheels to come: of a small model some more than are needed, since every step passes them
+# all; of a large one as many as take no more memory [byte] than the factor, or than this.
 _IDLE_SHARE = 0.5
+_KEPT = 64e6
+
+# A path of so many d.o.f. has all its columns computed with the first ones, if they can be kept.
+_PATH_AT_ONCE = 128
 
 # Along a narrow band a column of A⁻¹ dies away within some meters: in one time step the load is felt no farther.
 # Entries below this share of its largest one are rounding, and left out; none above the second one is missed.
@@ -55,7 +59,9 @@ class PathColumns:
         self.integrator, self.path_dofs, self._loaded = integrator, path_dofs, loaded
         self.held = np.empty(0, dtype=np.int64)
         self.position = np.zeros(integrator.size, dtype=np.int64)  # d.o.f. -> place among the held ones
-        self._columns = np.empty((0, integrator.size))
+        self._columns = np.empty((0, integrator.size))  # in rows: that of the held d.o.f. i is at row[i]
+        self._row = self._used = np.empty(0, dtype=np.int64)  # (n_held,) row, and the stretch that last needed it
+        self._filled = self._stretch = 0  # rows that have ever been filled, stretches so far
         self._force = np.empty(0)
         # (1+α) β Δt² R A⁻¹ Rᵀ of the held d.o.f. [m/N]: row i begins at entry offset[i]; it is zero but from low[i] to
         # high[i].
@@ -66,7 +72,7 @@ class PathColumns:
     @property
     def nbytes(self) -> int:
         """Memory of the columns held [byte]."""
-        return int(self._columns.nbytes + self.compliance.nbytes)
+        return int(8 * self._filled * self.integrator.size + self.compliance.nbytes)
 
     def for_others(self) -> PathColumns:
         """Columns of the same structure for other crossings, which go on by themselves."""
@@ -87,25 +93,63 @@ class PathColumns:
             self._hold_whole(needed)
 
     def _hold_whole(self, needed: IntArray) -> None:
+        self._stretch += 1
         missing = np.setdiff1d(needed, self.held, assume_unique=True)
-        idle = len(self.held) + len(missing) - len(needed)
-        if not len(missing) and idle <= _IDLE_SHARE * len(self.held):
-            return
-        keep = (
-            np.isin(self.held, needed)
-            if idle > _IDLE_SHARE * max(len(needed), 1)
-            else np.ones(len(self.held), bool)
-        )
-        held = np.concatenate([self.held[keep], missing])
+        if len(missing):
+            self._bring(needed, missing)
+        self._used[self.position[needed]] = self._stretch
+
+    def _bring(self, needed: IntArray, missing: IntArray) -> None:
+        """Compute missing columns, and some that wheels will need; drop those unused for longest if memory asks for it."""
+        room = self._room(len(needed))
+        if len(self._columns) < room:
+            wider = np.empty((room, self.integrator.size))  # memory is taken when it is filled
+            wider[: self._filled] = self._columns[: self._filled]
+            self._columns = wider
+        idle = np.flatnonzero(~np.isin(self.held, needed, assume_unique=True))
+        excess = len(self.held) + len(missing) - room
+        keep = np.ones(len(self.held), dtype=bool)
+        if excess > 0:
+            keep[idle[np.argsort(self._used[idle], kind="stable")][:excess]] = False
+        held, row, used = self.held[keep], self._row[keep], self._used[keep]
+        new = np.concatenate([missing, self._ahead(held, missing, room)])
+        vacant = np.setdiff1d(np.arange(len(held) + len(new)), row)[: len(new)]
+        self.integrator.columns(new, self._columns, vacant)
+        self._filled = max(self._filled, int(vacant.max()) + 1)
+        held = np.concatenate([held, new])
         order = np.argsort(held)
-        self._columns = np.concatenate([self._columns[keep], self.integrator.columns(missing)])[order]
-        self.held = held[order]
+        self.held, self._row = held[order], np.concatenate([row, vacant])[order]
+        self._used = np.concatenate([used, np.full(len(new), self._stretch)])[order]
         self.position[:] = 0
         self.position[self.held] = np.arange(len(self.held))
-        block = self._scale * self._columns[:, self.held]
+        block = self._scale * self._columns[self._row[:, None], self.held]
         self.compliance = 0.5 * (block + block.T)
         self.offset = self.low = np.zeros_like(self.held)
         self.high = np.full_like(self.held, len(self.held))
+
+    @property
+    def _is_small(self) -> bool:
+        return self.integrator.size * len(self.path_dofs) <= _WHOLE_PRODUCT_UP_TO
+
+    def _room(self, needed: int) -> int:
+        """How many columns may be held when so many are needed."""
+        if self._is_small:
+            return min(int((1.0 + _IDLE_SHARE) * needed), len(self.path_dofs))
+        kept = max(_KEPT, self.integrator.factor.nbytes) / (8 * self.integrator.size)
+        return max(needed, min(int(kept), len(self.path_dofs)))
+
+    def _ahead(self, held: IntArray, missing: IntArray, room: int) -> IntArray:
+        """D.o.f. of the path next to those missing, to be solved for with them: several cost little more than few."""
+        others = np.setdiff1d(self.path_dofs, np.concatenate([held, missing]), assume_unique=True)
+        count = min(len(others), room - len(held) - len(missing))
+        if self._is_small or not count:
+            return others[:0]
+        if count < len(others) or len(self.path_dofs) > _PATH_AT_ONCE:
+            count = min(count, -len(missing) % _TOGETHER if len(held) else 0)
+        near, at = (np.searchsorted(self.path_dofs, dofs) for dofs in (np.sort(missing), others))
+        after = np.minimum(np.searchsorted(near, at), len(near) - 1)
+        distance = np.minimum(np.abs(near[after] - at), np.abs(near[np.maximum(after - 1, 0)] - at))
+        return others[np.argsort(distance, kind="stable")[:count]]
 
     @property
     def _scale(self) -> float:
@@ -175,12 +219,12 @@ class PathColumns:
             self._force[...] = 0.0
             subtract_at(self.held, -weight, load, self._force)
             return self.integrator.factor.solve(self._force, out=self._force)
-        if load.ndim > 1 or self._columns.size <= _WHOLE_PRODUCT_UP_TO:
-            return np.asarray(self._columns.T @ (weight * load))
-        result = np.zeros(self.integrator.size)
-        for i in np.flatnonzero(load).tolist():
-            daxpy(self._columns[i], result, a=weight * load[i])
-        return result
+        if load.ndim > 1 or self._filled * self.integrator.size <= _WHOLE_PRODUCT_UP_TO:
+            by_row = np.zeros((self._filled, *load.shape[1:]))
+            by_row[self._row] = weight * load
+            return np.asarray(self._columns[: self._filled].T @ by_row)
+        loaded = np.flatnonzero(load)
+        return weighted_rows(self._columns, self._row[loaded], weight * load[loaded])
 
 
 def _extent(entries: FloatArray, share: float) -> tuple[IntArray, IntArray]:

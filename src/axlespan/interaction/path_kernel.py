@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from scipy.linalg.blas import daxpy
 
 from axlespan.linalg.compiled import Loop, compiled
 
@@ -45,6 +46,36 @@ def load_sums(flat: IntArray, weights: FloatArray, forces: FloatArray, size: int
     result = np.zeros(size)
     loop(flat, weights, forces, result)
     return result
+
+
+@cache
+def _compiled_rows() -> Loop | None:
+    return compiled(_rows)
+
+
+def weighted_rows(table: FloatArray, rows: IntArray, weights: FloatArray) -> FloatArray:
+    """The sum (n,) of some rows of a table (m, n), times weights."""
+    result = np.zeros(table.shape[1])
+    if (loop := _compiled_rows()) is None:
+        for row, weight in zip(rows.tolist(), weights.tolist(), strict=True):
+            daxpy(table[row], result, a=weight)
+    elif len(rows):
+        spare = -len(rows) % 4
+        loop(table, np.pad(rows, (0, spare), mode="edge"), np.pad(weights, (0, spare)), result)
+    return result
+
+
+def _rows(table: Any, rows: Any, weights: Any, result: Any) -> None:
+    """Add to ``result`` four rows at a time, piece by piece, so that the pieces stay in the cache."""
+    for begin in range(0, result.shape[0], 1024):
+        end = min(begin + 1024, result.shape[0])
+        into = result[begin:end]
+        for i in range(0, rows.shape[0], 4):
+            r0, r1 = table[rows[i], begin:end], table[rows[i + 1], begin:end]
+            r2, r3 = table[rows[i + 2], begin:end], table[rows[i + 3], begin:end]
+            w0, w1, w2, w3 = weights[i], weights[i + 1], weights[i + 2], weights[i + 3]
+            for c in range(end - begin):
+                into[c] += (w0 * r0[c] + w1 * r1[c]) + (w2 * r2[c] + w3 * r3[c])
 
 
 def _sums(flat: Any, weights: Any, forces: Any, result: Any) -> None:

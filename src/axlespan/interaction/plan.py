@@ -96,37 +96,44 @@ class Plan:
         return sensor_rows(self.crossing.structure, self.settings.sensors, self.settings.sensor_lines)
 
 
-def plan_for(crossing: Crossing, settings: Settings) -> Plan:
+def plan_for(crossing: Crossing, settings: Settings, like: Plan | None = None) -> Plan:
     """Compile a crossing.
+
+    Parameters
+    ----------
+    crossing : Crossing
+    settings : Settings
+    like : Plan, optional
+        One that was compiled before: what is the same object in both crossings (structure, trains) is not compiled
+        again, and the plans share it. Numbers are those without it.
 
     Raises
     ------
     InputError
         If a wheel's line is unknown, no wheel is ever on the structure, or a sensor is off it.
     """
-    crossing.structure.require_stable()
-    _check_damping(crossing.structure)
     system = crossing.structure.system
+    same = like if like is not None and _same_trains(like, crossing, settings) else None
+    if like is not None and like.crossing.structure is not crossing.structure:
+        like = None
+    if like is None:
+        crossing.structure.require_stable()
+        _check_damping(crossing.structure)
+    moving = _moving(system) if like is None else like.moving
     line = crossing.structure.line(crossing.structure.sensor_line)
-    moving = np.array(
-        [
-            j
-            for j, motion in enumerate(system.motions)
-            if not (isinstance(motion, Constant) and motion.amount == 0.0)
-        ],
-        dtype=np.int64,
-    )
     plan = Plan(
         crossing=crossing,
         settings=settings,
-        structure=matrices_of(system),
-        forces=AppliedForces.of(system),
-        fleet=joined([fleet_of(run.train, crossing.gravity, run.first) for run in crossing.runs]),
-        rows=_train_rows(crossing, settings, moving),
-        sensor_path=_split(line, system, system.free),
-        sensor_path_moving=_split(line, system, system.prescribed[moving]),
+        structure=matrices_of(system) if like is None else like.structure,
+        forces=AppliedForces.of(system) if like is None else like.forces,
+        fleet=_fleet(crossing) if same is None else same.fleet,
+        rows=_train_rows(crossing, settings, moving, like),
+        sensor_path=_split(line, system, system.free) if like is None else like.sensor_path,
+        sensor_path_moving=(
+            _split(line, system, system.prescribed[moving]) if like is None else like.sensor_path_moving
+        ),
         moving=moving,
-        laws=laws_of(crossing, settings),
+        laws=laws_of(crossing, settings) if same is None else same.laws,
     )
     if plan.is_nonlinear:
         require_direct(settings, plan.laws, system.nonlinear)
@@ -137,9 +144,38 @@ def plan_for(crossing: Crossing, settings: Settings) -> Plan:
     notes += defect_notes(crossing, settings.time_step, end)
     if notes:
         plan = replace(plan, settings=replace(settings, notes=(*settings.notes, *notes)))
-    check_sensors(crossing.structure, settings.sensors, settings.sensor_lines)
-    _check_sections(crossing.structure, settings)
+    if like is None or _placed(settings) != _placed(like.settings):
+        check_sensors(crossing.structure, settings.sensors, settings.sensor_lines)
+        _check_sections(crossing.structure, settings)
     return plan
+
+
+def _moving(system: System) -> IntArray:
+    """Prescribed d.o.f. that move or are set down."""
+    still = [isinstance(motion, Constant) and motion.amount == 0.0 for motion in system.motions]
+    return np.flatnonzero(~np.array(still, dtype=bool))
+
+
+def _fleet(crossing: Crossing) -> Fleet:
+    return joined([fleet_of(run.train, crossing.gravity, run.first) for run in crossing.runs])
+
+
+def _same_trains(like: Plan, crossing: Crossing, settings: Settings) -> bool:
+    """Whether fleet and laws of a plan are those of another crossing too."""
+    before = [run.train for run in like.crossing.runs]
+    now = [run.train for run in crossing.runs]
+    return (
+        len(before) == len(now)
+        and all(one is other for one, other in zip(before, now, strict=True))
+        and like.crossing.gravity == crossing.gravity
+        and like.settings.contact == settings.contact
+    )
+
+
+def _placed(settings: Settings) -> tuple[object, ...]:
+    """What is kept where along the lines."""
+    kept = (settings.section_forces, settings.stresses, settings.envelopes)
+    return (dict(settings.sensors), dict(settings.sensor_lines), *kept)
 
 
 def _check_damping(structure: Structure) -> None:
@@ -250,14 +286,18 @@ def _block_diagonal(blocks: Sequence[Matrices]) -> Matrices:
     return Matrices(stiffness, mass, sp.csr_array(sp.block_diag(zero, format="csr")))
 
 
-def _train_rows(crossing: Crossing, settings: Settings, moving: IntArray) -> TrainRows:
+def _train_rows(crossing: Crossing, settings: Settings, moving: IntArray, like: Plan | None) -> TrainRows:
     system = crossing.structure.system
+    known = _lines_under_wheels(like, settings) if like is not None else {}
     profiles = [profile for run in crossing.runs for profile in run.profiles]
     groups: dict[tuple[str, int], list[int]] = {}
     for i, (name, profile) in enumerate(zip(crossing.contact_lines, profiles, strict=True)):
         groups.setdefault((name, id(profile)), []).append(i)
     lines: dict[str, tuple[PolynomialPath, PolynomialPath | None]] = {}
     for name in dict.fromkeys(crossing.contact_lines):
+        if name in known:
+            lines[name] = known[name]
+            continue
         path = crossing.structure.line(name)
         path = settings.under_wheels(path)
         prescribed = _split(path, system, system.prescribed[moving]) if len(moving) else None
@@ -267,6 +307,17 @@ def _train_rows(crossing: Crossing, settings: Settings, moving: IntArray) -> Tra
         for (name, _), wheels in groups.items()
     )
     return TrainRows(tuple(Wheels(run.course, run.train.offsets) for run in crossing.runs), paths)
+
+
+def _lines_under_wheels(
+    plan: Plan, settings: Settings
+) -> dict[str, tuple[PolynomialPath, PolynomialPath | None]]:
+    """Lines of a plan by their names, if wheels touch them as these settings want it."""
+    own = plan.settings
+    if (own.footprint, own.sleepers) != (settings.footprint, settings.sleepers):
+        return {}
+    names = plan.crossing.contact_lines
+    return {names[int(path.wheels[0])]: (path.free, path.prescribed) for path in plan.rows.paths}
 
 
 def _split(path: PolynomialPath, system: System, keep: IntArray) -> PolynomialPath:
@@ -308,7 +359,11 @@ def _check_reach(plan: Plan) -> None:
     for number, run in enumerate(plan.crossing.runs):
         wheels = begin + np.arange(len(run.lines))
         begin += len(wheels)
-        paths = [path.free for path in plan.rows.paths if np.isin(path.wheels, wheels).any()]
+        paths = [
+            path.free
+            for path in plan.rows.paths
+            if np.any((path.wheels >= wheels[0]) & (path.wheels <= wheels[-1]))
+        ]
         start, stop = min(path.start for path in paths), max(path.stop for path in paths)
         head = run.course.head(ends)
         way = np.concatenate([head, head - run.course.direction * run.train.wheelbase])

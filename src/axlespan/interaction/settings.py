@@ -26,6 +26,10 @@ RIGID = Rigid()
 #: Time [s] after which a vehicle with all wheels in the air is lost, when none is given.
 LOST_AFTER = 0.5
 
+#: How often a step that does not converge may be halved, when nothing else is said.
+CUTS = 4
+MOST_CUTS = 10
+
 #: Environment variable with the number of threads, where a run does not name it.
 THREADS = "AXLESPAN_THREADS"
 
@@ -93,6 +97,7 @@ class Settings:
     energy_samples: int | None = None  # steps at which the energy is balanced; by size when left out
     notes: Sequence[str] = ()  # what was chosen by default, and warnings
     contact: Law = RIGID  # of wheels that have no law of their own
+    cuts: int = CUTS  # how often a step of a nonlinear run that does not converge may be halved
     lost_after: float = LOST_AFTER  # time for which all wheels of a vehicle may be in the air [s]
     threads: int = 1
 
@@ -126,6 +131,7 @@ def settings_for(
     basis_tolerance: float | None = None,
     line_points: int | Sequence[float] | None = None,
     contact: str | Law = RIGID,
+    cuts: int = CUTS,
     lost_after: float = LOST_AFTER,
     threads: int | None = None,
 ) -> Settings:
@@ -173,9 +179,16 @@ def settings_for(
         line_points=line_positions(crossing.structure, line_points),
         notes=tuple(notes),
         contact=law_of(contact),
+        cuts=_cuts(cuts),
         lost_after=require_positive(lost_after, "lost_after"),
         threads=_threads(threads),
     )
+
+
+def _cuts(given: int) -> int:
+    if isinstance(given, bool) or int(given) != given or not 0 <= given <= MOST_CUTS:
+        raise InputError(f"must be a whole number from 0 to {MOST_CUTS}", field="cuts", value=given)
+    return int(given)
 
 
 def _threads(given: int | None) -> int:

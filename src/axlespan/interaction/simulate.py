@@ -20,7 +20,8 @@ from axlespan.interaction.crossing import Crossing
 from axlespan.interaction.fused.march import FusedMarch
 from axlespan.interaction.groundwork import Groundwork, basis_for, prepare_reduced, translations
 from axlespan.interaction.march import couple_directly
-from axlespan.interaction.nonlinear.march import begin_nonlinear, watch
+from axlespan.interaction.nonlinear.fused_march import NonlinearMarch
+from axlespan.interaction.nonlinear.march import begin_nonlinear, watch, with_cutting
 from axlespan.interaction.plan import Plan, plan_for
 from axlespan.interaction.progress_bar import reporting
 from axlespan.interaction.records.recorder import Recorder
@@ -30,8 +31,8 @@ from axlespan.interaction.rivals.iterative import IterativeCoupling
 from axlespan.interaction.rivals.literal import couple_literally
 from axlespan.interaction.rivals.refactored import couple_by_refactoring
 from axlespan.interaction.sensors import SensorPlace
-from axlespan.interaction.settings import LOST_AFTER, RIGID, Iteration, Settings, settings_for
-from axlespan.interaction.start import StartFactors, start_of
+from axlespan.interaction.settings import CUTS, LOST_AFTER, RIGID, Iteration, Settings, settings_for
+from axlespan.interaction.start import StartFactors, starts_of
 from axlespan.running.structure import Structure
 
 FloatArray = npt.NDArray[np.float64]
@@ -75,6 +76,7 @@ def simulate(
     line_points: int | Sequence[float] | None = None,
     contact: str | Law = RIGID,
     lost_after: float = LOST_AFTER,
+    cuts: int = CUTS,
     threads: int | None = None,
     progress: Callable[[int], None] | bool | None = None,
 ) -> Result:
@@ -127,6 +129,9 @@ def simulate(
         Law of the wheels that have none of their own, see :mod:`axlespan.contact.laws`.
     lost_after : float
         Time [s] for which all wheels of a vehicle may be in the air before the run stops.
+    cuts : int
+        How often a step of a run with nonlinear springs or contact may be halved where it does not converge: 4 means
+        16 parts. 0 stops the run at once.
     basis : {"full", "reduced"} or ReducedBasis
         All d.o.f. of the structure, or a reduced basis, which is built here or given (see
         :func:`reduce_structure`). The result's facts hold its size and an estimate of its error.
@@ -171,6 +176,7 @@ def simulate(
         line_points=line_points,
         contact=contact,
         lost_after=lost_after,
+        cuts=cuts,
         threads=threads,
     )
     with reporting(progress, steps) as report:
@@ -197,6 +203,7 @@ def simulate_many(
     line_points: int | Sequence[float] | None = None,
     contact: str | Law = RIGID,
     lost_after: float = LOST_AFTER,
+    cuts: int = CUTS,
     threads: int | None = None,
 ) -> list[Result]:
     """Simulate several crossings of one structure side by side, from one factorization.
@@ -214,7 +221,7 @@ def simulate_many(
         As for :func:`simulate`; with other solvers than PARDISO the crossings are shared among so many threads.
     method, sensors, footprint, sleepers, solver, every, fields, section_forces, stresses, envelopes : optional
         As for :func:`simulate`.
-    basis, basis_tolerance, line_points, contact, lost_after : optional
+    basis, basis_tolerance, line_points, contact, lost_after, cuts : optional
         As for :func:`simulate`.
 
     Returns
@@ -260,6 +267,7 @@ def simulate_many(
             line_points=line_points,
             contact=contact,
             lost_after=lost_after,
+            cuts=cuts,
             threads=threads,
         )
 
@@ -334,7 +342,7 @@ def _driven(
     nonlinear = (
         begin_nonlinear(plans[0], factors) if plans[0].is_nonlinear else None
     )  # a single crossing then
-    starts = [start_of(plan, factors) for plan in plans] if nonlinear is None else [nonlinear[0]]
+    starts = starts_of(plans, factors) if nonlinear is None else [nonlinear[0]]
     recorders: list[Recorder] = []
     for plan, error in zip_longest(plans, errors):
         recorders.append(
@@ -346,9 +354,11 @@ def _driven(
     ]
     couple, systems = _couple(plans[0].settings.coupling)
     if nonlinear is not None:
-        couple = nonlinear[1]
         watch(nonlinear[1], recorders[0])
+        couple = with_cutting(nonlinear[1], recorders[0])
     leaper = FusedMarch.of if couple is couple_directly else None
+    if nonlinear is not None:
+        leaper = NonlinearMarch.led_by(nonlinear[1], couple)
     drive(lanes, prepared, couple, systems=systems, leaper=leaper)
     estimates: list[dict[str, Any]] = [{} for _ in lanes]
     if basis is not None:

@@ -13,6 +13,7 @@ Accelerations and contact forces follow from the equations of motion and this co
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -20,17 +21,43 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
 
-from axlespan.contact.rows import RowBlock
-from axlespan.dynamics.integrator import Matrices, State
-from axlespan.interaction.plan import Fleet, Plan
+from axlespan.dynamics.integrator import State
+from axlespan.interaction.line_responses import LineResponses, side_by_side
+from axlespan.interaction.plan import Plan
+from axlespan.interaction.start_rows import (
+    ContactRows,
+    MomentRows,
+    about_to_enter,
+    carried_by,
+    entering_wheels,
+    rows_at,
+)
+from axlespan.interaction.start_vehicles import (
+    Group,
+    Vehicles,
+    condensed_stiffness,
+    mass_factor,
+    where_mass,
+)
 from axlespan.linalg.factor import Factor, factorize
+
+__all__ = [
+    "ContactRows",
+    "Start",
+    "StartFactors",
+    "about_to_enter",
+    "carried_by",
+    "condensed_stiffness",
+    "entering",
+    "mass_factor",
+    "rows_at",
+    "start_of",
+    "starts_of",
+    "where_mass",
+]
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
-
-# Share of the effective stiffness that stands in for the missing mass of massless d.o.f.: their
-# accelerations then are those that keep the static balance of forces, to this relative accuracy.
-_SUBSTITUTE = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,29 +70,25 @@ class Start:
     load: FloatArray  # Eᵀ X (n,) on the structure [N]
 
 
-@dataclass(frozen=True, eq=False)
-class ContactRows:
-    """Rows of all wheels at a time, with derivatives along the line."""
-
-    E: sp.csr_array  # (n_contact, n)
-    E1: sp.csr_array
-    E2: sp.csr_array
-    height: FloatArray  # (n_contact,) r + E_P u_P [m]
-    rate: FloatArray  # ṡ (r' + E_P' u_P) + E_P u̇_P [m/s]
-    second_rate: FloatArray  # [m/s^2]
-
-
 class StartFactors:
-    """Factors of the structure's K and M, made when a start needs them, once for all crossings of a structure."""
+    """Factors of the structure's K and M, made when a start needs them, once for all crossings of a structure.
 
-    def __init__(self, plan: Plan) -> None:
-        self._plan = plan
+    ``like`` is a factor of its effective matrix, whose order of elimination serves K too.
+    """
+
+    def __init__(self, plan: Plan, like: Factor | None = None) -> None:
+        self._plan, self._like = plan, like
 
     @cached_property
     def stiffness(self) -> Factor:
-        """Factor of K."""
+        """Factor of K: the one that the check of the supports left over, where it is of the kind asked for."""
         settings = self._plan.settings
-        return factorize(self._plan.structure.K, kind=settings.solver, threads=settings.threads)
+        known = self._plan.crossing.structure.stiffness_factor if settings.solver == "auto" else None
+        if known is not None and (settings.threads == 1 or known.name != "pardiso"):
+            return known
+        return factorize(
+            self._plan.structure.K, kind=settings.solver, threads=settings.threads, like=self._like
+        )
 
     @cached_property
     def mass(self) -> Factor:
@@ -74,87 +97,158 @@ class StartFactors:
 
 
 def start_of(plan: Plan, factors: StartFactors | None = None) -> Start:
-    """The state at time zero; crossings of one structure may share the factors."""
-    factors = factors or StartFactors(plan)
-    rows, fleet = rows_at(plan), plan.fleet
-    n, n_contact = plan.structure.size, len(fleet.weight)
-    external = plan.forces.at(0.0) if plan.forces.n_term else np.zeros(n)
-    u_s, forces = _static(plan, plan.forces.static(0.0), rows, factors)
-    u_e, v_s = entering(plan, rows, forces)
-    u_s = u_s + u_e
-    u_v, forces = vehicles_at(fleet, forces, rows, u_s)
-    structure, vehicles = State.at_rest((n,)), State.at_rest((fleet.matrices.size,))
-    structure.u[:], structure.v[:], vehicles.u[:] = u_s, v_s, u_v
-    x = fleet.coupled
-    speed, _ = plan.rows.motion(0.0)
-    vehicles.v[fleet.dofs] = (rows.rate + speed * (rows.E1 @ u_s) + rows.E @ v_s)[x]
-    forces = _accelerate(plan, structure, vehicles, external, rows, forces.reshape(n_contact), speed, factors)
-    return Start(structure, vehicles, forces, np.asarray(rows.E.T @ forces))
+    """The state at time zero of one crossing."""
+    return starts_of([plan], factors)[0]
 
 
-def rows_at(plan: Plan, time: float = 0.0) -> ContactRows:
-    """The rows of all wheels at a time, with derivatives along the line."""
-    now = np.array([time])
-    positions = plan.rows.positions(now)
-    speed, acceleration = plan.rows.motion(time)
-    wheels = np.arange(plan.rows.n_contact)
-    blocks = [plan.rows.rows(positions, wheels, derivative) for derivative in range(3)]
-    n = plan.structure.size
-    row = np.broadcast_to(wheels[:, None], blocks[0].dofs[0].shape).ravel()
-    E, E1, E2 = (
-        sp.csr_array(sp.coo_array((b.weights[0].ravel(), (row, b.dofs[0].ravel())), shape=(len(wheels), n)))
-        for b in blocks
-    )
-    r, r1, r2 = (plan.rows.irregularity(positions, derivative)[0] for derivative in range(3))
-    height, rate = r.copy(), speed * r1
-    second = speed**2 * r2 + acceleration * r1
-    if len(plan.moving):
-        motions = [plan.crossing.structure.system.motions[j] for j in plan.moving]
-        u, v, a = (
-            np.array([getattr(m, name)(now)[0] for m in motions])
-            for name in ("value", "velocity", "acceleration")
-        )
-        p0, p1, p2 = (_prescribed_rows(block, len(motions)) for block in blocks)
-        height += p0 @ u
-        rate += speed * (p1 @ u) + p0 @ v
-        second += speed**2 * (p2 @ u) + acceleration * (p1 @ u) + 2.0 * speed * (p1 @ v) + p0 @ a
-    return ContactRows(E, E1, E2, height, rate, second)
+def starts_of(plans: Sequence[Plan], factors: StartFactors | None = None) -> list[Start]:
+    """The states at time zero of crossings of one structure; what they solve for goes side by side."""
+    factors = factors or StartFactors(plans[0])
+    kinds = Vehicles(plans[0])
+    drafts = [_Draft.of(plan, kinds) for plan in plans]
+    _stand(drafts, factors)
+    for draft in drafts:
+        draft.follow_the_line()
+    _accelerate(drafts, factors, kinds)
+    n = plans[0].structure.size
+    return [
+        Start(d.structure, d.vehicles, d.forces, d.rows.load(d.forces[d.rows.on], n)) for d in drafts
+    ]
 
 
-def carried_by(E: sp.csr_array) -> npt.NDArray[np.bool_]:
-    """Which wheels (n_contact,) the structure carries."""
-    return np.asarray(abs(E).sum(axis=1) > 0.0)
+@dataclass(eq=False)
+class _Draft:
+    """A start that is being worked out."""
+
+    plan: Plan
+    rows: MomentRows
+    groups: list[Group]
+    entering: npt.NDArray[np.bool_]  # (n_on,) wheels that the structure feels before they are on it
+    structure: State
+    vehicles: State
+    forces: FloatArray  # (n_contact,) [N]
+
+    @classmethod
+    def of(cls, plan: Plan, kinds: Vehicles) -> _Draft:
+        """All at rest under the static contact forces."""
+        rows, fleet = MomentRows.at(plan), plan.fleet
+        early = entering_wheels(plan, rows)
+        still = State.at_rest((plan.structure.size,)), State.at_rest((fleet.matrices.size,))
+        return cls(plan, rows, kinds.groups(fleet), early, *still, fleet.weight.copy())
+
+    @cached_property
+    def coupled_place(self) -> IntArray:
+        """Place of each contact (n_contact,) among the coupled ones; -1 for moving forces."""
+        place = np.full(len(self.forces), -1, dtype=np.int64)
+        place[self.plan.fleet.coupled] = np.arange(len(self.plan.fleet.coupled))
+        return place
+
+    @cached_property
+    def loading(self) -> IntArray:
+        """Wheels on the structure that load it, among those on it."""
+        return np.flatnonzero(self.rows.carried)
+
+    def touching(self) -> list[tuple[Group, IntArray, IntArray]]:
+        """Groups with their vehicles that load the structure, and with the others."""
+        loads = np.zeros(len(self.plan.fleet.coupled), dtype=bool)
+        place = self.coupled_place[self.rows.on[self.loading]]
+        loads[place[place >= 0]] = True
+        touch = [loads[group.contacts].any(axis=1) for group in self.groups]
+        return [(g, np.flatnonzero(t), np.flatnonzero(~t)) for g, t in zip(self.groups, touch, strict=True)]
+
+    def blocks(self, matrices: dict[int, FloatArray]) -> tuple[IntArray, FloatArray]:
+        """Coupled contacts (m,) of vehicles that load the structure, and a block (c, c) for each on the diagonal."""
+        wheels = [group.contacts[some] for group, some, _ in self.touching()]
+        chosen = np.concatenate([np.empty(0, dtype=np.int64), *(w.ravel() for w in wheels)])
+        result, at = np.zeros((len(chosen), len(chosen))), 0
+        for number, own in enumerate(wheels):
+            c = own.shape[1]
+            for _ in range(len(own)):
+                result[at : at + c, at : at + c] = matrices[number]
+                at += c
+        return chosen, result
+
+    def follow_the_line(self) -> None:
+        """Set displacements and velocities of the vehicles to those of the line under their wheels."""
+        fleet, rows, u, v = self.plan.fleet, self.rows, self.structure.u, self.structure.v
+        x = fleet.coupled
+        if not len(x):
+            return
+        height, rate = rows.height.copy(), rows.rate.copy()
+        if len(rows.on):
+            height[rows.on] += rows.read(u)
+            rate[rows.on] += rows.speed[rows.on] * rows.read(u, 1) + rows.read(v)
+        self.vehicles.v[fleet.dofs] = rate[x]
+        if np.any(height[x]):
+            level, values = height[x], self.vehicles.u
+            values[fleet.dofs] = level
+            for group in self.groups:
+                values[group.dofs[:, group.kind.rest]] = level[group.contacts] @ group.kind.follow.T
 
 
-def _prescribed_rows(block: RowBlock, n: int) -> FloatArray:
-    """E_P (n_contact, n) of the prescribed d.o.f. that move."""
-    dofs, weights = block.prescribed_dofs[0], block.prescribed_weights[0]
-    result = np.zeros((len(dofs), n))
-    np.add.at(result, (np.arange(len(dofs))[:, None], dofs), weights)
-    return result
+def _stand(drafts: Sequence[_Draft], factors: StartFactors) -> None:
+    """Set displacements of the structure and contact forces with the trains at rest on it, and what enters."""
+    plan = drafts[0].plan
+    external = plan.forces.static(0.0)
+    u_0 = factors.stiffness.solve(external) if np.any(external) else None
+    standing = [draft for draft in drafts if np.any(draft.rows.carried & ~draft.entering)]
+    responses = None
+    if standing:
+        lanes = [(d.rows.dofs[d.loading], d.rows.weights[0][d.loading]) for d in standing]
+        responses = LineResponses(factors.stiffness, lanes)
+    amounts = []
+    for draft in drafts:
+        level = draft.rows.height.copy()
+        if u_0 is not None:
+            draft.structure.u[:] = u_0
+            level[draft.rows.on] += draft.rows.read(u_0)
+        _elastic_share(draft, level)
+        if draft in standing and responses is not None:
+            amounts.append(_balance(draft, level, responses.between(len(amounts))))
+    if responses is not None:
+        for draft, u in zip(standing, responses.under(amounts).T, strict=True):
+            draft.structure.u[:] -= u
+    for draft in drafts:
+        if np.any(draft.entering & draft.rows.carried):
+            rows = ContactRows.of(draft.rows, plan.structure.size)
+            u, v = entering(draft.plan, rows, draft.forces)
+            draft.structure.u[:] += u
+            draft.structure.v[:] += v
 
 
-def _static(
-    plan: Plan, external: FloatArray, rows: ContactRows, factors: StartFactors
-) -> tuple[FloatArray, FloatArray]:
-    """Deflection of the structure and contact forces with the train at rest on it."""
-    fleet, n = plan.fleet, plan.structure.size
-    forces = fleet.weight.copy()
-    carried = np.flatnonzero(carried_by(rows.E) & ~about_to_enter(plan))
-    if not len(carried) and not np.any(external):
-        return np.zeros(n), forces + _elastic_share(fleet, rows.height)
-    factor = factors.stiffness
-    u_0 = factor.solve(external.copy())
-    columns = (
-        factor.solve(np.ascontiguousarray(rows.E[carried].T.toarray())) if len(carried) else np.zeros((n, 0))
-    )
-    compliance = np.zeros((len(forces), len(forces)))
-    compliance[:, carried] = rows.E @ columns
-    # X = X_st + k (E u + r) with E u = E u_0 - (E K⁻¹ Eᵀ) X
-    k = condensed_stiffness(fleet)
-    right = forces + k @ (rows.E @ u_0 + rows.height)
-    forces = np.asarray(np.linalg.solve(np.eye(len(forces)) + k @ compliance, right), dtype=np.float64)
-    return u_0 - columns @ forces[carried], forces
+def _elastic_share(draft: _Draft, level: FloatArray) -> None:
+    """Change contact forces as an uneven level (n_contact,) under vehicles on many wheels does."""
+    own = level[draft.plan.fleet.coupled]
+    if np.any(own):
+        for group in draft.groups:
+            wheels = draft.plan.fleet.coupled[group.contacts]
+            draft.forces[wheels] += own[group.contacts] @ group.kind.stiffness
+
+
+def _balance(draft: _Draft, level: FloatArray, compliance: FloatArray) -> FloatArray:
+    """Forces (m,) of the wheels that load the structure, which gives way under them: E K⁻¹ Eᵀ (m, m).
+
+    X = X_st + k (E u + r) with E u = E u_0 - (E K⁻¹ Eᵀ) X.
+    """
+    fleet, rows = draft.plan.fleet, draft.rows
+    on = rows.on[draft.loading]
+    # Wheels that enter have not deflected the structure.
+    compliance = compliance * ~draft.entering[draft.loading]
+    stiffness = {i: group.kind.stiffness for i, group in enumerate(draft.groups)}
+    chosen, k = draft.blocks(stiffness)
+    if len(chosen):
+        place = np.full(len(draft.forces), -1)
+        place[fleet.coupled[chosen]] = np.arange(len(chosen))
+        at = place[on]
+        moving = at >= 0
+        under = np.zeros(len(chosen))
+        under[at[moving]] = compliance[moving][:, ~moving] @ draft.forces[on[~moving]]
+        wheels = fleet.coupled[chosen]
+        right = fleet.weight[wheels] + k @ (level[wheels] - under)
+        system = np.eye(len(chosen))
+        system[:, at[moving]] += k[:, at[moving]] @ compliance[np.ix_(moving, moving)]
+        draft.forces[wheels] = np.linalg.solve(system, right)
+    return np.asarray(draft.forces[on] * ~draft.entering[draft.loading])
 
 
 def entering(plan: Plan, rows: ContactRows, forces: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -181,138 +275,106 @@ def entering(plan: Plan, rows: ContactRows, forces: FloatArray) -> tuple[FloatAr
     return u, v
 
 
-def about_to_enter(plan: Plan) -> npt.NDArray[np.bool_]:
-    """Which wheels (n_contact,) run onto the structure over a fixed end that they have not passed.
-
-    A footprint reaches over that end before its wheel does. A train that has been running has not deflected
-    the structure by that share of a wheel, as one that stands there would.
-    """
-    positions = plan.rows.positions(np.zeros(1))[0]
-    speeds, _ = plan.rows.motion(0.0)
-    names = np.asarray(plan.crossing.contact_lines)
-    free = np.zeros(plan.crossing.structure.system.size, dtype=bool)
-    free[plan.crossing.structure.system.free] = True
-    result = np.zeros(len(positions), dtype=bool)
-    for name in dict.fromkeys(plan.crossing.contact_lines):
-        path = plan.crossing.structure.line(name)
-        here = np.flatnonzero(names == name)
-        before = (positions[here] <= path.start) & (speeds[here] > 0.0)
-        behind = (positions[here] >= path.stop) & (speeds[here] < 0.0)
-        dofs, weights = path.weights(np.clip(positions[here], path.start, path.stop))
-        gives_way = np.any((np.abs(weights) > 1e-9) & free[dofs], axis=1)
-        result[here] = (before | behind) & ~gives_way
-    return result
-
-
-def condensed_stiffness(fleet: Fleet) -> FloatArray:
-    """Static stiffness (n_contact, n_contact) of the vehicles seen from their contact points."""
-    n_contact = len(fleet.weight)
-    result = np.zeros((n_contact, n_contact))
-    if len(fleet.coupled):
-        rest = np.setdiff1d(np.arange(fleet.matrices.size), fleet.dofs)
-        stiffness = sp.csr_array(fleet.matrices.K)
-        own = stiffness[fleet.dofs][:, fleet.dofs].toarray()
-        if len(rest):
-            link = stiffness[rest][:, fleet.dofs].toarray()
-            own = own - link.T @ factorize(sp.csr_array(stiffness[rest][:, rest])).solve(
-                np.ascontiguousarray(link)
-            )
-        scale = np.abs(stiffness.diagonal()[fleet.dofs])
-        own[np.abs(own) < 1e-12 * np.sqrt(np.outer(scale, scale))] = (
-            0.0  # statically determinate vehicles: rounding
-        )
-        result[np.ix_(fleet.coupled, fleet.coupled)] = own
-    return result
+def _accelerate(drafts: Sequence[_Draft], factors: StartFactors, kinds: Vehicles) -> None:
+    """Set the accelerations of both bodies, and the contact forces that go with them."""
+    plan = drafts[0].plan
+    external = plan.forces.at(0.0) if plan.forces.n_term else np.zeros(plan.structure.size)
+    struck: list[_Draft] = []
+    nets = []
+    for draft in drafts:
+        net = _out_of_balance(draft, external)
+        if net is not None:
+            struck.append(draft)
+            nets.append(where_mass(plan.structure, net))
+    if struck:
+        for draft, a in zip(struck, side_by_side(factors.mass, nets), strict=True):
+            draft.structure.a[:] = a
+    lanes, rows = [], []
+    for draft in struck:
+        of_vehicles = draft.loading[draft.coupled_place[draft.rows.on[draft.loading]] >= 0]
+        if len(of_vehicles):
+            lanes.append((draft, of_vehicles))
+            rows.append((draft.rows.dofs[of_vehicles], draft.rows.weights[0][of_vehicles]))
+    responses = LineResponses(factors.mass, rows) if rows else None
+    coupled = {id(draft): (i, of_vehicles) for i, (draft, of_vehicles) in enumerate(lanes)}
+    changes = []
+    for draft in drafts:
+        if not len(draft.plan.fleet.coupled):
+            continue
+        lane, of_vehicles = coupled.get(id(draft), (-1, np.empty(0, dtype=np.int64)))
+        between = responses.between(lane) if responses is not None and lane >= 0 else np.zeros((0, 0))
+        change = _accelerate_vehicles(draft, kinds, of_vehicles, between)
+        if lane >= 0:
+            changes.append(change)
+    if responses is not None:
+        for (draft, _), a in zip(lanes, responses.under(changes).T, strict=True):
+            draft.structure.a[:] -= a
 
 
-def _elastic_share(fleet: Fleet, heights: FloatArray) -> FloatArray:
-    """Change of the contact forces (n_contact,) from an uneven level under vehicles on many wheels."""
-    return (
-        np.asarray(condensed_stiffness(fleet) @ heights) if np.any(heights) else np.zeros(len(fleet.weight))
-    )
+def _out_of_balance(draft: _Draft, external: FloatArray) -> FloatArray | None:
+    """Forces (n,) on the structure that accelerate it; None where it stands still, without wheels of vehicles."""
+    m, state = draft.plan.structure, draft.structure
+    net = external.copy()
+    if np.any(state.u):
+        net -= m.K @ state.u
+    if np.any(state.v):
+        net -= m.damping_force(state.v)
+    net -= draft.rows.load(draft.forces[draft.rows.on], m.size)
+    of_vehicles = draft.coupled_place[draft.rows.on[draft.loading]] >= 0
+    limit = 1e-9 * max(float(np.abs(external).max(initial=0.0)), 1e-30)
+    still = not np.any(of_vehicles) and float(np.abs(net).max(initial=0.0)) <= limit
+    return None if still else net
 
 
-def vehicles_at(
-    fleet: Fleet, forces: FloatArray, rows: ContactRows, u_s: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Displacements of the vehicles at rest on the deflected, uneven line."""
-    u = np.zeros(fleet.matrices.size)
-    if not len(fleet.coupled):
-        return u, forces
-    u[fleet.dofs] = (rows.height + rows.E @ u_s)[fleet.coupled]
-    rest = np.setdiff1d(np.arange(fleet.matrices.size), fleet.dofs)
-    if len(rest) and np.any(u):
-        stiffness = sp.csr_array(fleet.matrices.K)
-        u[rest] = factorize(sp.csr_array(stiffness[rest][:, rest])).solve(-(stiffness[rest] @ u))
-    return u, forces
-
-
-def _accelerate(
-    plan: Plan,
-    structure: State,
-    vehicles: State,
-    external: FloatArray,
-    rows: ContactRows,
-    static: FloatArray,
-    speed: FloatArray,
-    factors: StartFactors,
+def _accelerate_vehicles(
+    draft: _Draft, kinds: Vehicles, of_vehicles: IntArray, between: FloatArray
 ) -> FloatArray:
-    """Fill in the accelerations of both bodies; return the contact forces (n_contact,)."""
-    fleet, x = plan.fleet, plan.fleet.coupled
-    _, acceleration = plan.rows.motion(0.0)
-    out_of_balance = external - plan.structure.K @ structure.u - plan.structure.damping_force(structure.v)
-    out_of_balance -= rows.E.T @ static
-    carried = carried_by(rows.E)[x]
-    still = not np.any(carried) and np.abs(out_of_balance).max(initial=0.0) <= 1e-9 * max(
-        np.abs(external).max(initial=0.0), 1e-30
-    )
-    structure_mass = None if still else factors.mass
-    columns = np.zeros((plan.structure.size, len(x)))
-    if structure_mass is not None:
-        structure.a[:] = structure_mass.solve(where_mass(plan.structure, out_of_balance))
-        if np.any(carried):
-            columns = structure_mass.solve(np.ascontiguousarray(rows.E[x].T.toarray()))
-    if not len(x):
-        return static
-    m = fleet.matrices
-    net = -(m.K @ vehicles.u) - m.damping_force(vehicles.v)
-    net[fleet.dofs] += static[x] - fleet.weight[x]
-    vehicle_mass = mass_factor(m, plan)
-    # The wheels' d.o.f. take the contact force; other massless d.o.f. are in balance already.
-    free = vehicle_mass.solve(where_mass(m, net, fleet.dofs))
-    unit = np.zeros((m.size, len(x)))
-    unit[fleet.dofs, np.arange(len(x))] = 1.0
-    responses = vehicle_mass.solve(unit)
-    wanted = rows.second_rate[x] + (
-        rows.E[x] @ structure.a
-        + speed[x] ** 2 * (rows.E2[x] @ structure.u)
-        + acceleration[x] * (rows.E1[x] @ structure.u)
-        + 2.0 * speed[x] * (rows.E1[x] @ structure.v)
-    )
-    system = responses[fleet.dofs] + rows.E[x] @ columns
-    change = np.linalg.solve(system, wanted - free[fleet.dofs])  # of the contact forces, from the static ones
-    vehicles.a[:] = free + responses @ change
-    structure.a[:] -= columns @ change
-    forces = static.copy()
-    forces[x] += change
-    return forces
+    """Set the vehicles' accelerations and change the contact forces, from the static ones; the changes (m,).
+
+    Parameters
+    ----------
+    of_vehicles : array (m,)
+        Their wheels that load the structure, among those on it.
+    between : array (m, m)
+        E M⁻¹ Eᵀ of these wheels [1/kg].
+    """
+    fleet, state = draft.plan.fleet, draft.vehicles
+    m, x = fleet.matrices, fleet.coupled
+    net = -(m.K @ state.u) - m.damping_force(state.v)
+    net[fleet.dofs] += draft.forces[x] - fleet.weight[x]
+    wanted = _wanted(draft)[x]
+    if not len(of_vehicles) and not np.any(wanted) and not np.any(net):
+        return np.zeros(0)
+    mass = {i: kinds.mass(group.kind) for i, group in enumerate(draft.groups)}
+    for i, group in enumerate(draft.groups):
+        state.a[group.dofs] = mass[i].free(net[group.dofs])
+    wanted -= state.a[fleet.dofs]
+    change = np.zeros(len(x))
+    for i, (group, _, others) in enumerate(draft.touching()):
+        if len(others):
+            wheels = group.contacts[others]
+            change[wheels] = np.linalg.solve(mass[i].at_contacts, wanted[wheels].T).T
+    chosen, system = draft.blocks({i: own.at_contacts for i, own in mass.items()})
+    loading = draft.coupled_place[draft.rows.on[of_vehicles]]
+    if len(chosen):
+        place = np.full(len(x), -1)
+        place[chosen] = np.arange(len(chosen))
+        at = place[loading]
+        system[at[:, None], at] += between
+        change[chosen] = np.linalg.solve(system, wanted[chosen])
+    for i, group in enumerate(draft.groups):
+        state.a[group.dofs] += change[group.contacts] @ mass[i].responses.T
+    draft.forces[x] += change
+    return change[loading]
 
 
-def mass_factor(matrices: Matrices, plan: Plan) -> Factor:
-    """Factor of M, with a trace of stiffness where a d.o.f. has no mass."""
-    diagonal = matrices.M.diagonal()
-    mass = matrices.M
-    if np.any(diagonal <= 0.0):
-        dt = plan.settings.time_step
-        mass = mass + (_SUBSTITUTE * 0.25 * dt**2) * matrices.K
-        if matrices.C is not None:
-            mass = mass + (_SUBSTITUTE * 0.5 * dt) * matrices.C
-    return factorize(sp.csr_array(mass), kind=plan.settings.solver, threads=plan.settings.threads)
-
-
-def where_mass(matrices: Matrices, force: FloatArray, also: IntArray | None = None) -> FloatArray:
-    """The force, without the rounding that stands on massless d.o.f. in balance."""
-    mask = matrices.M.diagonal() > 0.0
-    if also is not None:
-        mask[also] = True
-    return np.where(mask, force, 0.0)
+def _wanted(draft: _Draft) -> FloatArray:
+    """Accelerations (n_contact,) of the line under the wheels, but for what the change of their forces does to it."""
+    rows, state = draft.rows, draft.structure
+    result = rows.second_rate.copy()
+    if len(rows.on):
+        speed, acceleration = rows.speed[rows.on], rows.acceleration[rows.on]
+        slope = rows.read(state.u, 1)
+        result[rows.on] += rows.read(state.a) + speed**2 * rows.read(state.u, 2) + acceleration * slope
+        result[rows.on] += 2.0 * speed * rows.read(state.v, 1)
+    return result

@@ -59,7 +59,7 @@ def start_notes(crossing: Crossing) -> list[str]:
 
 def _unused(crossing: Crossing) -> Iterator[str]:
     """Irregularities of lines that no wheel runs on."""
-    ridden = {crossing.line_name(name) for run in crossing.runs for name in run.lines}
+    ridden = {crossing.line_name(name) for name in dict.fromkeys(crossing.contact_lines)}
     for moving in (crossing, *crossing.others):
         if isinstance(moving.irregularity, Mapping):
             for name in moving.irregularity:

@@ -45,6 +45,8 @@ _COMPUTATION = {
     "contact_laws": "contact_laws",
     "newton_iterations": "newton_iterations",
     "newton_iterations_largest": "newton_iterations_largest",
+    "cut_steps": "cut_steps",
+    "smallest_time_step": "smallest_time_step_s",
     "nonlinear_springs": "nonlinear_springs",
     "nonlinear_springs_active": "nonlinear_springs_active",
     "wall_time": "wall_time_s",

@@ -303,6 +303,7 @@ def _computed(computation: Mapping[str, Any]) -> str:
         _with(threads if threads and threads > 1 else None, "{} threads"),
         _with(computation.get("iterations"), "{} iterations"),
         _with(computation.get("factorizations"), "{} factorizations"),
+        _with(computation.get("cut_steps") or None, "{} steps cut"),
         _with(wall, "{:.3g} s"),
         _with(rate, "{:.0f} steps/s"),
     ]

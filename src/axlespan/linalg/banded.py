@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from operator import itemgetter
 from typing import NoReturn
 
 import numpy as np
 from scipy.linalg.lapack import dpbtrf, dpbtrs, dtbtrs
-from scipy.sparse.csgraph import reverse_cuthill_mckee
+from scipy.sparse.csgraph import connected_components, reverse_cuthill_mckee
 
 from axlespan.linalg.arrays import CsrMatrix, FloatArray, IntArray, right_hand_side, row_indices
+from axlespan.linalg.band_blocks import NARROWEST, BandBlocks
 from axlespan.linalg.band_kernel import (
     WIDEST,
     compiled_single,
@@ -19,6 +21,13 @@ from axlespan.linalg.band_kernel import (
 )
 from axlespan.linalg.definiteness import PivotBreakdown
 from axlespan.linalg.protocol import refuse_pickling
+
+
+# Half-bandwidth times right-hand sides from which blocks pay.
+_BLOCKS_PAY = 1600
+
+# Parts that are eliminated one after the other, at most; a diagonal matrix has as many as rows.
+_PARTS = 64
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,20 +47,32 @@ class BandOrder:
 
     @classmethod
     def of(cls, matrix: CsrMatrix) -> BandOrder:
-        """Return the reverse Cuthill-McKee order, or the given one where that is as narrow."""
-        row, column = row_indices(matrix), matrix.indices
-        given = int(np.abs(row - column).max(initial=0))
-        rows = np.asarray(reverse_cuthill_mckee(matrix, symmetric_mode=True), dtype=np.intp)
-        rank = _inverse(rows)
-        reordered = int(np.abs(rank[row] - rank[column]).max(initial=0))
-        return cls(given, None) if given <= reordered else cls(reordered, rows)
+        """Return the narrowest of three orders, the first of equals.
+
+        They are the given one; the given one part by part, where no entry connects parts with one another, as those of
+        each direction in a mass matrix; and the reverse Cuthill-McKee order.
+        """
+        orders: list[tuple[int, IntArray | None]] = [(_spread(matrix, None), None)]
+        n_part, part = connected_components(matrix, directed=False)
+        if 1 < n_part <= _PARTS:
+            by_part = np.argsort(part, kind="stable").astype(np.intp)
+            orders.append((_spread(matrix, by_part), by_part))
+        reordered = np.asarray(reverse_cuthill_mckee(matrix, symmetric_mode=True), dtype=np.intp)
+        orders.append((_spread(matrix, reordered), reordered))
+        return cls(*min(orders, key=itemgetter(0)))
+
+    def on(self, matrix: CsrMatrix) -> BandOrder:
+        """The same order for another matrix."""
+        return BandOrder(_spread(matrix, self.rows), self.rows)
 
 
 class BandedFactor:
     """Cholesky factor in LAPACK's band storage.
 
-    With numba, one right-hand side of a narrow band and several at once of any band are solved by compiled loops
-    (n = 5436, half-bandwidth 13: 50 µs for one and 18 µs each for 48, where LAPACK takes 160 µs); else by LAPACK.
+    With numba, one right-hand side of a narrow band and several at once are solved by compiled loops (n = 5436,
+    half-bandwidth 13: 50 µs for one and 18 µs each for 48, where LAPACK takes 160 µs). Several at once of a wide band
+    are solved block by block (n = 36 597, half-bandwidth 401: 14 ms for one, 7.5, 3.4 and 2.1 ms each for 8, 32 and 64);
+    all else by LAPACK.
 
     Parameters
     ----------
@@ -72,6 +93,7 @@ class BandedFactor:
         order = order or BandOrder.of(matrix)
         self.n: int = matrix.shape[0]
         self.half_bandwidth = order.half_bandwidth
+        self.band_order = order
         self._rows = order.rows
         self._rank = None if order.rows is None else _inverse(order.rows)
         self._lower, info = dpbtrf(_band(matrix, self._rank, self.half_bandwidth), lower=1, overwrite_ab=1)
@@ -117,12 +139,26 @@ class BandedFactor:
             work[:width] = work[-width:] = 0.0
             self._single(*self._scaled, self._order, b, out, work)
             return out
+        if self._blocks_are_faster(b):
+            if self._rows is not None:
+                x = b.take(self._rows, axis=0)
+                BandBlocks(self._lower).solve(x)
+                return self._scatter(x, out)
+            if out is not b:
+                np.copyto(out, b)
+            BandBlocks(self._lower).solve(out)
+            return out
         if self._loop_is_faster(b) and (solver := compiled_solver()) is not None:
             if out is not b:
                 np.copyto(out, b)
             solver(self._lower.T, self._order, out)
             return out
         return self._scatter(dpbtrs(self._lower, self._gather(b), lower=1, overwrite_b=1)[0], out)
+
+    def _blocks_are_faster(self, b: FloatArray) -> bool:
+        """Whether products of blocks beat LAPACK and the loop: measured for half-bandwidths of 133 to 800."""
+        count = 1 if b.ndim == 1 else b.shape[1]
+        return count > 1 and self.half_bandwidth >= NARROWEST and self.half_bandwidth * count >= _BLOCKS_PAY
 
     def _loop_is_faster(self, b: FloatArray) -> bool:
         """Whether the compiled loop beats LAPACK: measured for half-bandwidths of 8 to 400."""
@@ -163,6 +199,16 @@ class BandedFactor:
         refuse_pickling(self.name)
 
 
+def _spread(matrix: CsrMatrix, rows: IntArray | None) -> int:
+    """Largest distance between row and column of an entry in an order of elimination; the matrix is symmetric."""
+    n, filled = matrix.shape[0], np.flatnonzero(np.diff(matrix.indptr))
+    if not len(filled):
+        return 0
+    rank = np.arange(n, dtype=np.int32) if rows is None else _inverse(rows).astype(np.int32)
+    first = np.minimum.reduceat(rank[matrix.indices], matrix.indptr[filled])
+    return max(int((rank[filled] - first).max()), 0)
+
+
 def _inverse(rows: IntArray) -> IntArray:
     rank = np.empty_like(rows)
     rank[rows] = np.arange(rows.size)
@@ -171,10 +217,13 @@ def _inverse(rows: IntArray) -> IntArray:
 
 def _band(matrix: CsrMatrix, rank: IntArray | None, half_bandwidth: int) -> FloatArray:
     """Lower band storage: entry (i, j) of the reordered matrix stands at [i − j, j]."""
-    row, column = row_indices(matrix), matrix.indices.astype(np.intp, copy=False)
-    if rank is not None:
-        row, column = rank[row], rank[column]
+    n, column = matrix.shape[0], matrix.indices.astype(np.intp, copy=False)
+    if rank is None:
+        row = row_indices(matrix)
+    else:
+        row, column = np.repeat(rank, np.diff(matrix.indptr)), rank[column]
     lower = row >= column
-    band = np.zeros((half_bandwidth + 1, matrix.shape[0]), order="F")
-    band[row[lower] - column[lower], column[lower]] = matrix.data[lower]
-    return band
+    # In memory column after column, so at (i - j) + j (half_bandwidth + 1).
+    band = np.zeros(n * (half_bandwidth + 1))
+    band[(row + half_bandwidth * column)[lower]] = matrix.data[lower]
+    return band.reshape(n, half_bandwidth + 1).T

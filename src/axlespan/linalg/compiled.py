@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 Loop = Callable[..., Any]
@@ -34,8 +36,46 @@ def compiled(loop: Loop) -> Loop | None:
     try:
         made: Loop = numba.njit(cache=True, **options)(loop)
     except RuntimeError:  # no folder to keep the machine code in
-        made = numba.njit(**options)(loop)
+        return numba.njit(**options)(loop)  # type: ignore[no-any-return, unused-ignore]
+    _watch_sources(made, loop)
     return made
+
+
+def _watch_sources(made: Any, loop: Loop) -> None:
+    """Have machine code on disk made anew when the source of anything that a loop calls, or a constant, has changed.
+
+    Numba looks at the time and size of the loop's own file alone: what it calls is part of the machine code, and
+    files of a package may all bear the same time.
+    """
+    index: Any = getattr(getattr(made, "_cache", None), "_cache_file", None)
+    if index is not None and hasattr(index, "_source_stamp"):
+        index._source_stamp = (index._source_stamp, tuple(sorted(_ingredients(loop, set()))))
+
+
+def _ingredients(loop: Loop, seen: set[Loop]) -> set[str]:
+    """Fingerprints of the files of a loop and all loops that it calls, and the constants that they use."""
+    if loop in seen:
+        return set()
+    seen.add(loop)
+    found = {_fingerprint(loop.__code__.co_filename)}
+    for name in loop.__code__.co_names:
+        value = loop.__globals__.get(name)
+        called = getattr(value, "py_func", None) or getattr(
+            value, "_defn", None
+        )  # loops, and numba's intrinsics
+        if called is not None:
+            found |= _ingredients(called, seen)
+        elif isinstance(value, int | float):
+            found.add(f"{name} = {value!r}")
+    return found
+
+
+@cache
+def _fingerprint(file: str) -> str:
+    try:
+        return hashlib.sha256(Path(file).read_bytes()).hexdigest()
+    except OSError:
+        return file
 
 
 def as_compiled(loop: Loop) -> Loop:

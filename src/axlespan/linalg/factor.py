@@ -32,8 +32,8 @@ _SOLVE_TIME = {
     "superlu": (50.0, 2.4),
 }
 # The same for each of many right-hand sides side by side; a kind that is not named gains nothing. PARDISO on the
-# solid model: 24 ms for one, 5.5 ms each for 8, 2.9 ms each for 32; a band: 16, 16 and 8 ms.
-_SOLVE_TIME_OF_MANY = {"banded": (1.0, 0.5), "pardiso": (30.0, 0.25)}
+# solid model: 24 ms for one, 5.5 ms each for 8, 2.9 ms each for 32; a band: 14, 7.5 and 3.4 ms.
+_SOLVE_TIME_OF_MANY = {"banded": (1.0, 0.33), "pardiso": (30.0, 0.25)}
 _MANY = 8
 _SLOW_FACTORIZATION = {"superlu": 1.3}  # SuperLU takes five to twenty times the others' time to factorize
 _BAND_OUT_OF_CACHE = 16e6  # [byte]; a wider band is read from memory
@@ -117,7 +117,9 @@ def _choose(csr: CsrMatrix, order: BandOrder, columns: int) -> Choice:
     return Choice(sparse, f"wide band: half-bandwidth {half_bandwidth} of {n} equations; {why}")
 
 
-def factorize(matrix: MatrixLike, *, kind: str = "auto", threads: int = 1, columns: int = 1) -> Factor:
+def factorize(
+    matrix: MatrixLike, *, kind: str = "auto", threads: int = 1, columns: int = 1, like: Factor | None = None
+) -> Factor:
     """Factorize a symmetric positive definite matrix: A = L D Lᵀ.
 
     Parameters
@@ -130,6 +132,8 @@ def factorize(matrix: MatrixLike, *, kind: str = "auto", threads: int = 1, colum
         Threads for PARDISO; the others do not use it.
     columns : int, optional
         Right-hand sides that will be solved for at a time, for the choice of a kind.
+    like : Factor, optional
+        Of a matrix with the same pattern. If it is of a band, so is this one, in the same order.
 
     Returns
     -------
@@ -153,7 +157,11 @@ def factorize(matrix: MatrixLike, *, kind: str = "auto", threads: int = 1, colum
     """
     csr = symmetric_csr(matrix)
     check_diagonal(csr)
-    order = BandOrder.of(csr) if kind in ("auto", "banded") else None
+    order = None
+    if kind in ("auto", "banded") and isinstance(like, BandedFactor) and like.n == csr.shape[0]:
+        kind, order = "banded", like.band_order.on(csr)
+    elif kind in ("auto", "banded"):
+        order = BandOrder.of(csr)
     if kind == "auto":
         assert order is not None
         kind = _choose(csr, order, columns)

@@ -11,20 +11,44 @@ structure gives such a path, so contact, sensors and footprints need to know onl
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from math import comb
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
 
 from axlespan.errors import InputError
+from axlespan.linalg.compiled import numba_is_there
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 #: Shares of three sleepers in an axle load (EN 1991-2 6.3.6.1; from memory).
 SLEEPER_SHARES = (0.25, 0.5, 0.25)
+
+# So many positions at a time are worth machine code.
+_MANY = 256
+
+
+@cache
+def _loops() -> Any:
+    """The compiled loops over positions, None without numba."""
+    if not numba_is_there():
+        return None
+    from axlespan.running import path_kernel
+
+    return path_kernel
+
+
+def mark_used(dofs: IntArray, weights: FloatArray, mark: npt.NDArray[np.bool_]) -> None:
+    """Mark the d.o.f. (n,) that rows (..., n_local) give any weight."""
+    loops = _loops() if dofs.size >= _MANY else None
+    if loops is None:
+        mark[dofs[weights != 0.0]] = True
+    else:
+        loops.mark_used(dofs.reshape(-1), weights.reshape(-1), mark)
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +84,17 @@ class PolynomialPath:
         """Coefficients (n_power, n_segment, n_local), each power in one piece."""
         return np.ascontiguousarray(np.moveaxis(self.coefficients, 2, 0))
 
+    @cached_property
+    def _table(self) -> tuple[FloatArray, FloatArray, IntArray]:
+        """Breaks, coefficients (n_segment, n_power, n_local) and d.o.f., as the compiled loops want them."""
+        table = np.ascontiguousarray(np.moveaxis(self.coefficients, 2, 1))
+        return np.asarray(self.breaks, float), table, np.ascontiguousarray(self.dofs, dtype=np.int64)
+
+    @cached_property
+    def _weighty(self) -> npt.NDArray[np.bool_]:
+        """Which segments (n_segment,) have any weight."""
+        return np.asarray(np.any(self.coefficients != 0.0, axis=(1, 2)))
+
     def carries(self, position: FloatArray) -> npt.NDArray[np.bool_]:
         """Whether positions [m] are on the path, ends included."""
         return np.asarray((position >= self.start) & (position <= self.stop))
@@ -88,6 +123,52 @@ class PolynomialPath:
             result /= (np.diff(self.breaks)[segment] ** derivative)[..., None]
         result[~self.carries(position)] = 0.0
         return self.dofs[segment], result
+
+    def fill_rows(
+        self,
+        positions: FloatArray,
+        contacts: IntArray,
+        slots: IntArray,
+        dofs: IntArray,
+        weights: FloatArray,
+        derivative: int = 0,
+    ) -> None:
+        """Write the weights of some contacts that stand on the path, or derivatives along s, into places that hold zeros.
+
+        Parameters
+        ----------
+        positions : array (n_step, n_contact)
+            Of all contacts [m].
+        contacts, slots : array (n_wheel,)
+            Which of them, and their places in the arrays to fill.
+        dofs, weights : array (n_step, n_slot, at least n_local)
+        """
+        loops = None if derivative or positions.shape[0] * len(contacts) < _MANY else _loops()
+        if loops is not None:
+            loops.fill_rows(*self._table, np.ascontiguousarray(positions), contacts, slots, dofs, weights)
+            return
+        own_dofs, own = self.weights(positions[:, contacts], derivative)
+        dofs[:, slots, : own.shape[2]], weights[:, slots, : own.shape[2]] = own_dofs, own
+
+    def loads(
+        self, positions: FloatArray, forces: FloatArray, wheels: IntArray, n: int, shift: float = 0.0
+    ) -> FloatArray:
+        """Loads (n_step, n) on the d.o.f. of some wheels, from positions [m] and forces [N] (n_step, n_contact) of all.
+
+        ``shift`` [m] is added to the positions.
+        """
+        total = np.zeros((len(positions), n))
+        loops = None if positions.shape[0] * len(wheels) < _MANY else _loops()
+        if loops is not None:
+            arrays = (np.ascontiguousarray(positions), shift, np.ascontiguousarray(forces), wheels, total)
+            loops.add_loads(*self._table, self._weighty, *arrays)
+            return total
+        at = positions[:, wheels] + shift
+        step, wheel = np.nonzero(self.carries(at))
+        dofs, weights = self.weights(at[step, wheel])
+        shares = weights * forces[step, wheels[wheel]][:, None]
+        np.add.at(total.reshape(-1), (step[:, None] * n + dofs).ravel(), shares.ravel())
+        return total
 
     def rows(self, position: FloatArray, n: int, derivative: int = 0) -> sp.csr_array:
         """E (n_position, n) as a sparse matrix over n d.o.f."""

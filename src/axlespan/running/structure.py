@@ -11,13 +11,16 @@ import numpy.typing as npt
 
 from axlespan.card import Card, Shown, some
 from axlespan.errors import InputError
-from axlespan.linalg.factor import NotPositiveDefinite, factorize
+from axlespan.linalg.factor import Factor, NotPositiveDefinite, factorize
 from axlespan.model.dofs import nearest
 from axlespan.model.model import Model
 from axlespan.model.system import System
 from axlespan.running.path import PolynomialPath
 
 FloatArray = npt.NDArray[np.float64]
+
+# A factor of the stiffness takes no more memory than this when it is kept [byte].
+_KEPT = 256e6
 
 #: Name of the line that wheels use unless they name another.
 MAIN_LINE = "main"
@@ -76,15 +79,19 @@ class Structure(Shown):
         InputError
             If it is a mechanism, moves freely as a whole or has parts without support; d.o.f. are named.
         """
-        if not self._is_stable:
-            raise InputError("must be held by its supports", field="structure", value=self.name)
+        self._checked  # noqa: B018  # raises
+
+    @property
+    def stiffness_factor(self) -> Factor | None:
+        """Factor of K over the free d.o.f., which the check of the supports left over; None if it was too large to keep."""
+        return self._checked
 
     @cached_property
-    def _is_stable(self) -> bool:
+    def _checked(self) -> Factor | None:
         if not len(self.system.free):
             raise InputError("has no free degree of freedom", field="structure", value=self.name)
         try:
-            factorize(self.system.partition.K_FF)
+            factor = factorize(self.system.partition.K_FF)
         except NotPositiveDefinite as error:
             names = ", ".join(self.system.free_name(int(i)) for i in error.suspects[:6])
             what = {
@@ -98,7 +105,11 @@ class Structure(Shown):
                 value=self.name,
                 fix="Support these degrees of freedom, or connect the part that they belong to",
             ) from error
-        return True
+        return factor if factor.nbytes <= _KEPT else None
+
+    def __getstate__(self) -> dict[str, object]:
+        """All but the factor, which belongs to this process."""
+        return {name: value for name, value in self.__dict__.items() if name != "_checked"}
 
     def card(self) -> Card:
         """Return what is shown of it."""

@@ -2,6 +2,7 @@
 
 from axlespan.standards.assess import assess
 from axlespan.standards.assessment import CHECKS, Assessment
+from axlespan.standards.at_rest import AtRest
 from axlespan.standards.bridge_facts import BridgeFacts, bridge_facts
 from axlespan.standards.verdict import FROM_MEMORY, Verdict, envelope, overall, worst
 
@@ -9,6 +10,7 @@ __all__ = [
     "CHECKS",
     "FROM_MEMORY",
     "Assessment",
+    "AtRest",
     "BridgeFacts",
     "Verdict",
     "assess",

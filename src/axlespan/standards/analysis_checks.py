@@ -112,7 +112,9 @@ def _regular_distance(given: Given) -> tuple[float, str] | None:
             return float(values[most]), "from vehicle to vehicle"
     if not np.all(np.isfinite(given.static_forces)):
         return None
-    found = regular_distance(given.static_forces, wheels_behind(given))
+    found = given.at_rest.get(
+        "regular distance", lambda: regular_distance(given.static_forces, wheels_behind(given))
+    )
     return None if found is None else (found, "at which the axles add up most")
 
 

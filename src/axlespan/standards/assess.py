@@ -16,6 +16,7 @@ from axlespan.standards import (
     wheel_checks,
 )
 from axlespan.standards.assessment import CHECKS, Assessment
+from axlespan.standards.at_rest import AtRest
 from axlespan.standards.bridge_facts import BridgeFacts, bridge_facts
 from axlespan.standards.given import Given
 from axlespan.standards.verdict import Verdict
@@ -58,6 +59,7 @@ def assess(
     assessment: Assessment,
     *,
     facts: BridgeFacts | None = None,
+    at_rest: AtRest | None = None,
 ) -> tuple[Verdict, ...]:
     """Assess a run by the rules.
 
@@ -72,6 +74,8 @@ def assess(
     facts : BridgeFacts, optional
         Those of the bridge if they are known already, from :func:`bridge_facts`; they are the same for every
         train and speed.
+    at_rest : AtRest, optional
+        What earlier runs of this bridge, train and assessment found that is the same at every speed.
 
     Returns
     -------
@@ -86,7 +90,7 @@ def assess(
         facts = BridgeFacts(missing="the structure is not known, only its result")
         if crossing is not None:
             facts = bridge_facts(crossing.structure, assessment)
-    given = Given(result, assessment, facts, crossing)
+    given = Given(result, assessment, facts, crossing, at_rest or AtRest())
     effects: list[bridge_checks.SpanEffects] = []
     if any(check in _WITH_EFFECTS for check in assessment.checks):
         effects = bridge_checks.effects_of(given)

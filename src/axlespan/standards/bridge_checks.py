@@ -11,7 +11,6 @@ import numpy.typing as npt
 from axlespan.errors import InputError
 from axlespan.linalg.factor import NotPositiveDefinite
 from axlespan.standards import dynamic_factors, lm71
-from axlespan.standards.deck_checks import live_deflection
 from axlespan.standards.given import Given
 from axlespan.standards.influence import deflection_lines
 from axlespan.standards.limits import limit_of
@@ -94,7 +93,7 @@ def dynamic_effect(given: Given, effects: Sequence[SpanEffects]) -> list[Verdict
         reason = "a span does not deflect under the train or under load model 71"
     if reason:
         return [not_assessed(check, clause, quantity, reason, source=lm71.SOURCE)]
-    moved, at = live_deflection(given), given.result.line_position
+    moved, at = given.live_deflection, given.result.line_position
     factor, name = static_factor(given)
     n0, length = given.facts.first_frequency, given.facts.determinant_length
     assert n0 is not None and length is not None
@@ -139,10 +138,14 @@ def wheels_behind(given: Given) -> FloatArray:
 
 def effects_of(given: Given) -> list[SpanEffects]:
     """Static effects; none where the structure cannot be solved."""
-    try:
-        return span_effects(given)
-    except (InputError, NotPositiveDefinite):
-        return []
+
+    def found() -> list[SpanEffects]:
+        try:
+            return span_effects(given)
+        except (InputError, NotPositiveDefinite):
+            return []
+
+    return given.at_rest.get("effects on spans", found)
 
 
 def added_share(given: Given) -> tuple[float, str]:

@@ -52,13 +52,6 @@ def deck_acceleration(given: Given) -> list[Verdict]:
     return [verdict]
 
 
-def live_deflection(given: Given) -> FloatArray:
-    """Deflection of the deck by traffic (n_time, n_line_point) [m]: without what was there before the train."""
-    w = given.result.line_displacement
-    before = w[0] if not np.any(given.on_deck[0]) else np.zeros(w.shape[1])
-    return np.asarray(w - before)
-
-
 def deflection(given: Given) -> list[Verdict]:
     """Vertical deflection of each span under the train of the run, against L/600."""
     check, clause = "deflection", "EN 1990 A2.4.4.2.3"
@@ -70,7 +63,7 @@ def deflection(given: Given) -> list[Verdict]:
         return [not_assessed(check, clause, quantity, given.facts.missing)]
     limit = limit_of("deflection_ratio", given.assessment)
     assert limit.value is not None
-    moved = live_deflection(given)
+    moved = given.live_deflection
     best: tuple[float, float, int, int] | None = None
     for start, span in zip(given.facts.starts, given.facts.spans, strict=True):
         inside = np.flatnonzero(
@@ -196,7 +189,7 @@ def _end_motion(given: Given) -> tuple[FloatArray, FloatArray] | None:
     rest = not np.any(given.on_deck[0])
     slope = result.line_slope - (result.line_slope[0] if rest else 0.0)
     moved = np.zeros_like(slope)
-    live = live_deflection(given)
+    live = given.live_deflection
     for end in range(2):
         at = np.flatnonzero(np.abs(result.line_position - result.line_end[end]) < 1e-6)
         if len(at):

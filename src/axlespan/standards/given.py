@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy.typing as npt
 from axlespan.interaction.crossing import Crossing
 from axlespan.interaction.result import Result
 from axlespan.standards.assessment import Assessment
+from axlespan.standards.at_rest import AtRest
 from axlespan.standards.bridge_facts import BridgeFacts
 
 FloatArray = npt.NDArray[np.float64]
@@ -28,6 +29,7 @@ class Given:
     assessment: Assessment
     facts: BridgeFacts
     crossing: Crossing | None = None
+    at_rest: AtRest = field(default_factory=AtRest)
 
     @property
     def interval(self) -> float:
@@ -81,6 +83,12 @@ class Given:
             )
         position = self.result.contact_position
         return np.asarray((position >= ends[0]) & (position <= ends[1]))
+
+    @cached_property
+    def live_deflection(self) -> FloatArray:
+        """Deflection of the deck by traffic (n_time, n_line_point) [m]: without what was there before the train."""
+        w = self.result.line_displacement
+        return np.asarray(w if np.any(self.on_deck[0]) else w - w[0])
 
     def bodies(self) -> list[tuple[str, int, int | None]]:
         """Car bodies: name such as ``1.body``, column of its vertical d.o.f., and that of its pitch."""

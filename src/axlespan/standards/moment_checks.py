@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass
+
 import numpy as np
 import numpy.typing as npt
 
@@ -30,28 +33,22 @@ def dynamic_moment(given: Given) -> list[Verdict]:
     check, clause = "dynamic_moment", "EN 1991-2 6.4.6.5"
     quantity = "envelope of moments, with φ''/2, over Φ × LM71"
     reason = not_possible(given) or _unknown(given)
-    lines: list[InfluenceLine] = []
+    static: _Static | None = None
     if not reason:
-        assert given.crossing is not None and given.result.envelopes is not None
-        try:
-            lines = moment_lines(given.crossing.structure, given.result.envelopes.position)
-        except (InputError, NotPositiveDefinite) as error:
-            reason = f"influence lines cannot be computed: {error}"
-    if reason:
+        static = given.at_rest.get("moments", lambda: _static(given))
+        reason = static.reason
+    if reason or static is None:
         return [not_assessed(check, clause, quantity, reason, source=lm71.SOURCE)]
     assert given.result.envelopes is not None
     table, position = given.result.envelopes.of("moment"), given.result.envelopes.position
     factor, name = static_factor(given)
     second, _ = added_share(given)
-    model = {sign: factor * _of_model(given, lines, sign) for sign, _ in _SIGNS}
-    most = max(float(values.max()) for values in model.values())
+    model = {sign: factor * static.model[sign] for sign, _ in _SIGNS}
     best: tuple[float, int, str, float, float] | None = None
     for sign, word in _SIGNS:
         run = table.largest if sign > 0.0 else -table.smallest
         when = table.time_of_largest if sign > 0.0 else table.time_of_smallest
-        counts = np.flatnonzero(model[sign] >= _COUNTS * most)
-        for i in counts.tolist():
-            train = lm71.train_effect(lines[i], given.static_forces, wheels_behind(given), sign=sign)
+        for i, train in static.train[sign].items():
             ratio = (max(float(run[i]), 0.0) + second * train) / float(model[sign][i])
             if best is None or ratio > best[0]:
                 best = (ratio, i, word, float(when[i]), float(run[i]))
@@ -76,6 +73,34 @@ def dynamic_moment(given: Given) -> list[Verdict]:
             note=note + ("; the train governs, not LM71" if ratio > 1.0 else ""),
         )
     ]
+
+
+@dataclass(frozen=True, eq=False)
+class _Static:
+    """Moments at rest [N m] by their sign, in the sections of the envelope."""
+
+    model: Mapping[float, FloatArray]  # (n,) of LM71, without dynamic factor
+    train: Mapping[float, Mapping[int, float]]  # of the train, in the sections that count
+    reason: str = ""  # why they are not known
+
+
+def _static(given: Given) -> _Static:
+    assert given.crossing is not None and given.result.envelopes is not None
+    try:
+        lines = moment_lines(given.crossing.structure, given.result.envelopes.position)
+    except (InputError, NotPositiveDefinite) as error:
+        return _Static({}, {}, f"influence lines cannot be computed: {error}")
+    model = {sign: _of_model(given, lines, sign) for sign, _ in _SIGNS}
+    most = max(float(values.max()) for values in model.values())
+    loads, behind = given.static_forces, wheels_behind(given)
+    train = {
+        sign: {
+            int(i): lm71.train_effect(lines[i], loads, behind, sign=sign)
+            for i in np.flatnonzero(model[sign] >= _COUNTS * most)
+        }
+        for sign, _ in _SIGNS
+    }
+    return _Static(model, train)
 
 
 def _unknown(given: Given) -> str:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from axlespan.dynamics.alpha import Alpha
 from axlespan.errors import InputError
-from axlespan.interaction.crossing import Crossing, OtherTrain
+from axlespan.interaction.crossing import Crossing, Irregularity, OtherTrain
 from axlespan.interaction.plan import Plan, plan_for
 from axlespan.interaction.settings import Iteration, settings_for
 from axlespan.running.structure import MAIN_LINE, Structure
@@ -50,20 +50,26 @@ class BuiltCase:
         return (*self.warnings, *said)
 
 
+@dataclass(frozen=True, eq=False)
+class Known:
+    """Parts of a case that have been built before, as in a sweep; warnings about them have been told then."""
+
+    made: BuiltStructure | None = None
+    trains: Sequence[Train] | None = None  # the first one, and the others of the case
+    surfaces: Sequence[Irregularity | None] | None = None  # of the crossing, and of the other trains
+    like: Plan | None = None  # of another case: what holds here too is shared with it
+
+
 def build(
-    loaded: LoadedCase,
-    *,
-    made: BuiltStructure | None = None,
-    train: Train | None = None,
-    lasting: Callable[[Crossing], int] | None = None,
+    loaded: LoadedCase, known: Known | None = None, *, lasting: Callable[[Crossing], int] | None = None
 ) -> BuiltCase:
     """Build the structure, the train and the plan of a case.
 
     Parameters
     ----------
     loaded : LoadedCase
-    made, train : optional
-        Structure and train of this case where they have been built before, as in a sweep.
+    known : Known, optional
+        What has been built before.
     lasting : callable, optional
         Number of steps of a crossing, in place of the case's own.
 
@@ -72,18 +78,18 @@ def build(
     InputError
         If something is wrong that only shows now; it points to the place in the file.
     """
-    case = loaded.case
+    case, known = loaded.case, known or Known()
+    made = known.made
     if made is None:
         with pointing(loaded, "structure"):
             made = structure_of(case.structure)
             require_stable(made.structure, case.structure)
     with pointing(loaded, "crossing"):
         _require_lines(case.crossing, made.structure)
-    if train is None:
-        with pointing(loaded, "train"):
-            train = train_of(loaded, made.structure, lines=_lines(case.crossing))
+    trains = known.trains or _trains(loaded, made.structure)
     with pointing(loaded, "crossing"):
-        crossing = _crossing(loaded, made.structure, train)
+        surfaces = known.surfaces or _surfaces(loaded, made.structure)
+        crossing = _crossing(loaded, made.structure, trains, surfaces)
     with pointing(loaded, "analysis"):
         require_solver(case.analysis.solver)
         method = _method(loaded)
@@ -91,37 +97,60 @@ def build(
         if lasting is not None:
             options = {**options, "steps": lasting(crossing)}
         settings = settings_for(crossing, method=method, **options)
-        plan = plan_for(crossing, settings)
+        plan = plan_for(crossing, settings, known.like)
     warnings = (*loaded.warnings, *(f"{loaded.source.file}: structure: {word}" for word in made.warnings))
-    warnings = (*warnings, *overlaps(train, loaded.source), *stated_otherwise(loaded))
+    if known.trains is None:
+        warnings = (*warnings, *overlaps(trains[0], loaded.source), *stated_otherwise(loaded))
     return BuiltCase(loaded, crossing, plan, warnings, made.facts)
 
 
 # --- crossing and analysis ---------------------------------------------------------------------------
 
 
-def _crossing(loaded: LoadedCase, structure: Structure, train: Train) -> Crossing:
-    case = loaded.case.crossing
-    with pointing(loaded, "crossing.irregularity"):
-        profile = irregularity_of(case.irregularity, structure)
-    others: list[OtherTrain] = []
-    for number, other in enumerate(loaded.case.other_trains):
+def _trains(loaded: LoadedCase, structure: Structure) -> list[Train]:
+    """All trains of a case, the first one first."""
+    case = loaded.case
+    with pointing(loaded, "train"):
+        trains = [train_of(loaded, structure, lines=_lines(case.crossing))]
+    for number, other in enumerate(case.other_trains):
         path = f"other_trains.{number}"
-        with pointing(loaded, f"{path}.irregularity"):
-            own = None if other.irregularity is None else irregularity_of(other.irregularity, structure)
         with pointing(loaded, path):
             _require_lines(other, structure)
-        before = len(train.placements) + sum(len(one.train.placements) for one in others)
-        made = train_of(loaded, structure, f"{path}.train", other.train, _lines(other), before)
-        with pointing(loaded, path):
-            others.append(OtherTrain(train=made, irregularity=own, **_movement(other)))
+        before = sum(len(train.placements) for train in trains)
+        trains.append(train_of(loaded, structure, f"{path}.train", other.train, _lines(other), before))
+    return trains
+
+
+def _surfaces(loaded: LoadedCase, structure: Structure) -> list[Irregularity | None]:
+    """Irregularities of the crossing, and of the other trains that have their own."""
+    with pointing(loaded, "crossing.irregularity"):
+        surfaces: list[Irregularity | None] = [irregularity_of(loaded.case.crossing.irregularity, structure)]
+    for number, other in enumerate(loaded.case.other_trains):
+        with pointing(loaded, f"other_trains.{number}.irregularity"):
+            own = other.irregularity
+            surfaces.append(None if own is None else irregularity_of(own, structure))
+    return surfaces
+
+
+def _crossing(
+    loaded: LoadedCase,
+    structure: Structure,
+    trains: Sequence[Train],
+    surfaces: Sequence[Irregularity | None],
+) -> Crossing:
+    others: list[OtherTrain] = []
+    for number, other in enumerate(loaded.case.other_trains):
+        with pointing(loaded, f"other_trains.{number}"):
+            _require_lines(other, structure)
+            train, surface = trains[number + 1], surfaces[number + 1]
+            others.append(OtherTrain(train=train, irregularity=surface, **_movement(other)))
     crossing = Crossing(
         structure,
-        train,
-        irregularity=profile,
+        trains[0],
+        irregularity=surfaces[0],
         gravity=loaded.case.analysis.gravity,
         others=tuple(others),
-        **_movement(case),
+        **_movement(loaded.case.crossing),
     )
     _ = crossing.runs  # lines of irregularities are there
     return crossing
@@ -188,4 +217,5 @@ def _options(analysis: Any, output: Any, made: BuiltStructure) -> Mapping[str, A
         "line_points": output.line,
         "contact": analysis.contact.law,
         "lost_after": analysis.lost_after,
+        "cuts": analysis.cuts,
     }

@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, model_va
 
 from axlespan.errors import InputError
 from axlespan.interaction.outputs import ENVELOPES
-from axlespan.interaction.settings import LOST_AFTER
+from axlespan.interaction.settings import CUTS, LOST_AFTER, MOST_CUTS
 from axlespan.study.case_contact import KINDS as CONTACT_KINDS
 from axlespan.study.case_contact import Contact, RigidContact
 from axlespan.study.check_lists import Several
@@ -86,6 +86,8 @@ class Analysis(Part):
     """Contact of wheel and surface, where an entry of the train says nothing else."""
     lost_after: Duration = LOST_AFTER
     """Time for which all wheels of a vehicle may be in the air before the run stops."""
+    cuts: Annotated[int, Whole(at_least=0, at_most=MOST_CUTS)] = CUTS
+    """How often the time step may be halved where nonlinear springs or contact do not converge: 4 for 16 parts, 0 for none."""
     vehicles: Annotated[str, OneOf(VEHICLES)] = "full"
     """Vehicles as they are, as masses that follow the line, or as moving forces of their axle loads."""
     footprint: Annotated[

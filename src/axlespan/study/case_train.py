@@ -206,6 +206,8 @@ def library_names() -> tuple[str, ...]:
 
 def _known(raw: Any, info: ValidationInfo) -> Any:
     """Check the word under ``vehicle``: a kind, or a name in the library (context ``vehicles``)."""
+    if isinstance(raw, Placed):  # it has been checked
+        return raw
     word = raw.get("vehicle") if isinstance(raw, dict) else None
     if not isinstance(word, str) or word in KINDS.names:
         return KINDS.checked(raw)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -107,16 +108,16 @@ class Train(Shown):
     @property
     def wheelbase(self) -> float:
         """Distance from the first wheel to the last [m]."""
-        return float(max(self.offsets))
+        return float(self.offsets.max())
 
-    @property
-    def contacts(self) -> list[tuple[str, Vehicle, ContactPoint, float]]:
+    @cached_property
+    def contacts(self) -> tuple[tuple[str, Vehicle, ContactPoint, float], ...]:
         """Every contact: its name ``vehicle.wheel``, vehicle, point and distance behind the head [m]."""
-        return [
+        return tuple(
             (f"{i + 1}.{point.name}", item.vehicle, point, item.behind + point.behind)
             for i, item in enumerate(self.placements)
             for point in item.vehicle.contacts
-        ]
+        )
 
     @property
     def contact_names(self) -> tuple[str, ...]:
@@ -131,10 +132,12 @@ class Train(Shown):
             for point in item.vehicle.contacts
         )
 
-    @property
+    @cached_property
     def offsets(self) -> FloatArray:
-        """Distances (n_contact,) of the wheels behind the head [m]."""
-        return np.array([behind for *_, behind in self.contacts])
+        """Distances (n_contact,) of the wheels behind the head [m]; not to be written to."""
+        offsets = np.array([behind for *_, behind in self.contacts])
+        offsets.setflags(write=False)
+        return offsets
 
     def static_forces(self, gravity: float = GRAVITY) -> FloatArray:
         """Static contact forces (n_contact,) [N]."""

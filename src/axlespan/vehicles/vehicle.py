@@ -124,9 +124,19 @@ class Vehicle(Shown):
         """
         if self.system is None:
             return np.array([point.force for point in self.contacts])
-        blocks = self.system.partition
-        constant = [load.vector for load in self.system.loads if load.history is None]
-        weight = (self.system.weight(gravity) + sum(constant, np.zeros(self.system.size)))[self.system.free]
+        if gravity not in self._static:
+            self._static[gravity] = self._pressed(self.system, gravity)
+        return self._static[gravity].copy()
+
+    @cached_property
+    def _static(self) -> dict[float, FloatArray]:
+        """Static contact forces [N] by gravity [m/s^2]: crossings of one train share them."""
+        return {}
+
+    def _pressed(self, system: System, gravity: float) -> FloatArray:
+        blocks = system.partition
+        constant = [load.vector for load in system.loads if load.history is None]
+        weight = (system.weight(gravity) + sum(constant, np.zeros(system.size)))[system.free]
         x = self.contact_dofs
         rest = np.setdiff1d(np.arange(len(weight)), x)
         stiffness = sp.csr_array(blocks.K_FF)
@@ -176,6 +186,10 @@ class Vehicle(Shown):
 
     def frequencies(self) -> FloatArray:
         """Natural frequencies [Hz] with the contact points held, ascending; empty for moving forces and masses."""
+        return self._frequencies.copy()
+
+    @cached_property
+    def _frequencies(self) -> FloatArray:
         if self.system is None:
             return np.empty(0)
         blocks = self.system.partition

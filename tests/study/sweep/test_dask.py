@@ -110,7 +110,7 @@ def test_a_worker_that_is_killed(study, cluster, tmp_path, small_tasks):
     reference = study.table()
 
     def kill(done, failed, total):
-        if doomed.poll() is None:
+        if done and doomed.poll() is None:
             doomed.send_signal(signal.SIGKILL)
 
     outcome = study.run(tmp_path / "there", scheduler=cluster.address, progress=kill)

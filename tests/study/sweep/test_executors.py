@@ -9,7 +9,7 @@ import pytest
 from tests.study.sweep.conftest import STUDY, numbers_differ
 
 from axlespan.interaction.groundwork import Groundwork
-from axlespan.study.sweep import Study, executors, workshop
+from axlespan.study.sweep import Study, building, executors, workshop
 from axlespan.study.sweep.executors import InProcess, Lost, Processes
 from axlespan.study.sweep.planning import tasks
 from axlespan.study.sweep.recipe import Recipe
@@ -76,14 +76,14 @@ def test_many_structures_share_a_task_and_time_steps_do_not(study_file):
 
 def test_a_structure_is_built_once_and_kept(study, monkeypatch):
     built = []
-    make = workshop.structure_of
-    monkeypatch.setattr(workshop, "structure_of", lambda case: built.append(case) or make(case))
+    make = building.structure_of
+    monkeypatch.setattr(building, "structure_of", lambda case: built.append(case) or make(case))
     workshop._WORKSHOPS.clear()
     list(InProcess().run(work(study, 3)))
     assert [case.second_moment for case in built] == pytest.approx([0.09, 0.11])
 
 
-def deadly(task):
+def deadly(task, tell=None):
     """A task that kills its process, if it holds scenario 3; others are computed."""
     if 3 in task.ids:
         os.kill(os.getpid(), signal.SIGKILL)

@@ -17,6 +17,9 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 Csr = tuple[npt.NDArray[np.uint32], npt.NDArray[np.uint32], FloatArray]
 
+#: Entries of small rows that compiled loops read at a time.
+PIECE = 8
+
 
 @dataclass(frozen=True, eq=False)
 class BandedBody:

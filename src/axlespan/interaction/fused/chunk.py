@@ -58,18 +58,10 @@ class Chunk:
     def prepare(self, stretch: Stretch, lanes: int) -> None:
         """Take from a stretch the wheels and contact systems of these lanes."""
         low, high = self.contacts
-        own = np.flatnonzero((stretch.into >= low) & (stretch.into < high))
-        coupled = slice(own[0], own[-1] + 1) if len(own) else slice(0, 0)
-        self.wheels = (
-            self._places(stretch.flat[:, coupled], lanes),
-            stretch.weights[:, coupled],
-            stretch.into[coupled],
-        )
-        flat, weights = stretch.forced_flat, stretch.forced_weights
-        lane_of = flat[0, :, 0] % lanes if flat.size else np.empty(0, dtype=np.int64)
-        own = np.flatnonzero((lane_of >= self.lane) & (lane_of < self.lane + self.used))
-        forced = slice(own[0], own[-1] + 1) if len(own) else slice(0, 0)
-        self._forced = (self._places(flat[:, forced], lanes), weights[:, forced], stretch.forced[forced])
+        self.wheels = (*self._rows(stretch, True), _within(stretch.into, low, high))
+        begin = int(stretch.begins[1][self.lane])
+        end = int(stretch.begins[1][self.lane + self.used]) if self.lane + self.used < lanes else None
+        self._forced = (*self._rows(stretch, False), _within(stretch.forced, begin, end))
         systems = [
             s for s in stretch.systems if len(s.contacts) and low <= s.contacts[0] < high and s.matrices.size
         ]
@@ -83,12 +75,20 @@ class Chunk:
             np.array([max(sizes, default=0), *begins], dtype=np.int64),
         )
 
-    def _places(self, flat: IntArray, lanes: int) -> IntArray:
-        """Places in the chunk of places in the structure's state."""
-        if lanes == 1:
-            return np.asarray(self._body.rank[flat] * self.width)
-        dof, lane = np.divmod(flat, lanes)
-        return np.asarray(self._body.rank[dof] * self.width + (lane - self.lane))
+    def _rows(self, stretch: Stretch, coupled: bool) -> tuple[IntArray, FloatArray]:
+        """Places in the chunk (n_step, n_wheel, n_local) of the coupled wheels, or the moving forces, and weights."""
+        from axlespan.interaction.fused.kernel import fill_places  # numba is an optional part
+
+        lanes = stretch.crossings[self.lane : self.lane + self.used]
+        which = [np.flatnonzero((rows.rank >= 0) == coupled) for rows in lanes]
+        n_local = max(rows.dofs.shape[2] for rows in lanes)
+        shape = (stretch.n_step, sum(map(len, which)), n_local)
+        place, weights, begin = np.zeros(shape, np.int64), np.zeros(shape), 0
+        for lane, (rows, wheels) in enumerate(zip(lanes, which, strict=True)):
+            arrays = (rows.dofs, rows.weights, wheels, self._body.rank)
+            fill_places(*arrays, self.width, lane, begin, place, weights)
+            begin += len(wheels)
+        return place, weights
 
     def known(self, weight: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
         """Rows (n_step, n_wheel, n_local) and forces (n_wheel,) of moving forces."""
@@ -115,6 +115,11 @@ class Chunk:
         if len(own):
             values = structure.state.values.reshape(3, len(self._body.rank), -1)
             values[:, :, own] = self._values[:, self._body.rank][:, :, own - self.lane]
+
+
+def _within(names: IntArray, low: int, high: int | None) -> IntArray:
+    """Those of some sorted numbers that are in a range."""
+    return names[(names >= low) & (True if high is None else names < high)]
 
 
 def chunks_of(

@@ -15,9 +15,12 @@ from typing import Any
 
 import numpy as np
 
+from axlespan.interaction.fused.banded_body import PIECE
+from axlespan.interaction.fused.contact_kernel import fill_system, pack_rows, room_for, solve_system
 from axlespan.interaction.fused.lane_vectors import plus, plus_size, put, read, scaled, total
 from axlespan.linalg.compiled import as_compiled
 
+_EIGHT = (0,) * PIECE
 # A response to contact that is so much smaller than its largest value is none; asked every so many rows.
 _NOTHING, _ROWS = 1e-22, 16
 
@@ -133,7 +136,10 @@ def backward(lanes: Any, width: Any, lower: Any, x: Any, end: Any, must: Any) ->
 def move_vehicles(
     first: Any, kind: Any, begin: Any, entries: Any, parts: int, p: Any, values: Any, work: Any, result: Any
 ) -> None:
-    """Accelerations of vehicles, block after block, from their states (3, n) and the force in the last row of ``work``."""
+    """Accelerations of vehicles, block after block, from their states (3, n) and the force in the last row of ``work``.
+
+    Columns of a block of ``entries`` are padded to pieces; so ``result`` has room for a piece behind its end.
+    """
     u, v, a = values[0], values[1], values[2]
     for b in range(kind.shape[0]):
         low, high = first[b], first[b + 1]
@@ -141,36 +147,15 @@ def move_vehicles(
             work[0, i] = p[2, 0] * u[i] + (p[2, 1] * v[i] + p[2, 2] * a[i])
             if parts == 3:
                 work[1, i] = p[3, 1] * v[i] + p[3, 2] * a[i]
-        at = begin[kind[b]]
-        for i in range(low, high):
-            total = 0.0
+        padded = (high - low + PIECE - 1) // PIECE * PIECE
+        for piece in range(0, padded, PIECE):
+            at = begin[kind[b]] + piece
+            sums = scaled(0.0, read(_EIGHT, entries, np.uint64(at)))
             for part in range(parts):
                 for j in range(low, high):
-                    total += entries[at] * work[part, j]
-                    at += 1
-            result[i] = total
-
-
-@as_compiled
-def solve_small(S: Any, n: Any, x: Any) -> bool:
-    """S x = b in place for symmetric positive definite S (n, n), which is overwritten; False if it is not."""
-    for j in range(n):
-        pivot = S[j, j]
-        if not pivot > 0.0:
-            return False
-        for i in range(j + 1, n):
-            factor = S[j, i] / pivot
-            if factor != 0.0:
-                for m in range(i, n):
-                    S[i, m] -= factor * S[j, m]
-                x[i] -= factor * x[j]
-    for r in range(n):
-        j = n - 1 - r
-        total = x[j]
-        for m in range(j + 1, n):
-            total -= S[j, m] * x[m]
-        x[j] = total / S[j, j]
-    return True
+                    sums = plus(sums, work[part, j], read(_EIGHT, entries, np.uint64(at)))
+                    at += padded
+            put(result, np.uint64(low + piece), sums)
 
 
 @as_compiled
@@ -186,101 +171,111 @@ def march(
     known_place, known_weights, known_forces = known
     vectors, factors = external
     forces, gaps, at_contacts = fleet[0], fleet[1], fleet[2]
-    contacts, ends, matrices, sizes = systems
-    w = len(width) * len(lanes)
+    contacts, ends, wheel_ends, at, vehicles, path = systems
+    L, w = len(lanes), len(width) * len(lanes)
     gap = np.zeros(len(forces))
-    S = np.zeros((sizes[0], sizes[0]))
-    b = np.zeros(sizes[0])
-    dt, late_u, _, u_from_a, _ = late
-    u, v, a = state
+    most = 0
+    for s in range(len(ends) - 1):
+        most = max(most, ends[s + 1] - ends[s])
+    S, b, within = np.zeros((most, most)), np.zeros(most), np.zeros(most, np.int64)
+    room = room_for(place.shape[1], place.shape[2])
+    one_by_one = np.arange(len(known_forces))
     for k in range(first, stop):
         if forced:
-            if k > 0:  # before the first step of a stretch, it is there already
-                extra[:] = 0.0
-                if wp != 0.0:
-                    _load(place[k - 1], weights[k - 1], into, forces, -wp, 0, extra)
-                    _load(
-                        known_place[k - 1],
-                        known_weights[k - 1],
-                        np.arange(len(known_forces)),
-                        known_forces,
-                        -wp,
-                        0,
-                        extra,
-                    )
-            _load(known_place[k], known_weights[k], np.arange(len(known_forces)), known_forces, -wc, 0, extra)
+            if k > 0 and wp != 0.0:  # before the first step of a stretch, it is there already
+                add_load(place[k - 1], weights[k - 1], into, forces, -wp, 0, extra)
+                add_load(known_place[k - 1], known_weights[k - 1], one_by_one, known_forces, -wp, 0, extra)
+            add_load(known_place[k], known_weights[k], one_by_one, known_forces, -wc, 0, extra)
             for t in range(factors.shape[1]):
                 if factors[k, t] != 0.0:
                     for i in range(vectors.shape[1]):
-                        for c in range(len(lanes)):
-                            extra[i * len(lanes) + c] += factors[k, t] * vectors[t, i]
+                        for c in range(L):
+                            extra[i * L + c] += factors[k, t] * vectors[t, i]
         forward(
             lanes, width, p, late, state, x, added, reach, K, C, damped, lower, extra, forced, ring, ahead, k > first, True
         )  # fmt: skip
+        if forced:
+            if factors.shape[1] or k == 0:
+                extra[:] = 0.0
+            else:
+                clear(place[k - 1], weights[k - 1], extra)
+                clear(known_place[k - 1], known_weights[k - 1], extra)
+                clear(known_place[k], known_weights[k], extra)
         if k > first:
-            _write(lanes, state, tape, k - 1)
+            write(lanes, state, tape, k - 1)
         backward(lanes, width, lower, x, n, 0)
-        added[reach[0] * len(lanes) + w : reach[1] * len(lanes) + w] = 0.0
+        added[reach[0] * L + w : reach[1] * L + w] = 0.0
         reach[:] = 0
         if at_contacts[1] > at_contacts[0]:
-            _predict_fleet(fleet, p, late, wp, gaps[k], gap)
-            for r in range(len(into)):
-                total = 0.0
-                for m in range(place.shape[2]):
-                    if weights[k, r, m] != 0.0:
-                        at = np.uint64(place[k, r, m])
-                        total += weights[k, r, m] * (
-                            u[at] + (dt * v[at] + late_u * a[at]) + u_from_a * x[at + np.uint64(w)]
-                        )
-                gap[into[r]] += total
-            _on_ground(fleet, gap)
+            predict_fleet(fleet, p, late, wp, gaps[k], gap)
+            add_line(place[k], weights[k], into, late, state, x, w, gap)
+            on_ground(fleet, gap)
+            pack_rows(lanes, place[k], weights[k], path, room)
             for s in range(len(ends) - 1):
-                own = contacts[ends[s] : ends[s + 1]]
-                m = len(own)
-                size = m * m
-                begin = sizes[1 + s] + k * size
-                for i in range(m):
+                own, here = contacts[ends[s] : ends[s + 1]], (wheel_ends[s], wheel_ends[s + 1])
+                for i in range(len(own)):
                     b[i] = gap[own[i]]
-                    for j in range(i, m):
-                        S[i, j] = matrices[begin + i * m + j]
-                if not solve_small(S, m, b):
+                fill_system(here, at, own, vehicles, path, room, S, within)
+                if not solve_system(S, within, len(own), b):
                     return k
-                for i in range(m):
+                for i in range(len(own)):
                     forces[own[i]] = b[i]
-            low, high = _load(place[k], weights[k], into, forces, -wc, w, added)
+            low, high = add_load(place[k], weights[k], into, forces, -wc, w, added)
             if high >= low:
-                low, high = low // len(lanes) - len(width), high // len(lanes) - len(width) + 1
+                low, high = low // L - len(width), high // L - len(width) + 1
                 end = eliminate(lanes, width, lower, added, low, high)
                 reach[0], reach[1] = backward(lanes, width, lower, added, end, low), end
-            _take_fleet(fleet, late, tape, k)
+            take_fleet(fleet, late, tape, k)
     forward(
-        lanes,
-        width,
-        p,
-        late,
-        state,
-        x,
-        added,
-        reach,
-        K,
-        C,
-        damped,
-        lower,
-        extra,
-        forced,
-        ring,
-        ahead,
-        True,
-        False,
-    )
-    _write(lanes, state, tape, stop - 1)
-    added[reach[0] * len(lanes) + w : reach[1] * len(lanes) + w] = 0.0
+        lanes, width, p, late, state, x, added, reach, K, C, damped, lower, extra, forced, ring, ahead, True, False
+    )  # fmt: skip
+    write(lanes, state, tape, stop - 1)
+    added[reach[0] * L + w : reach[1] * L + w] = 0.0
     reach[:] = 0
     return stop
 
 
 @as_compiled
-def _load(place: Any, weights: Any, into: Any, forces: Any, factor: float, shift: int, load: Any) -> Any:
+def add_line(place: Any, weights: Any, into: Any, late: Any, state: Any, x: Any, w: int, gap: Any) -> None:
+    """Add to the gaps what the line does under wheels with rows (n_wheel, n_local) without new contact forces."""
+    dt, late_u, _, u_from_a, _ = late
+    u, v, a = state
+    for r in range(len(into)):
+        height = 0.0
+        for m in range(place.shape[1]):
+            if weights[r, m] != 0.0:
+                i = np.uint64(place[r, m])
+                height += weights[r, m] * (
+                    u[i] + (dt * v[i] + late_u * a[i]) + u_from_a * x[i + np.uint64(w)]
+                )
+        gap[into[r]] += height
+
+
+@as_compiled
+def clear(place: Any, weights: Any, load: Any) -> None:
+    """Take away what wheels with rows (n_wheel, n_local) have loaded."""
+    for r in range(place.shape[0]):
+        for m in range(place.shape[1]):
+            if weights[r, m] != 0.0:
+                load[np.uint64(place[r, m])] = 0.0
+
+
+@as_compiled
+def fill_places(
+    dofs: Any, weights: Any, which: Any, rank: Any, width: int, lane: int, begin: int, place: Any, into: Any
+) -> None:
+    """Places in a chunk of some wheels ``which`` of a lane with rows (n_step, n_wheel, n_local), and their weights."""
+    for k in range(dofs.shape[0]):
+        for i in range(which.shape[0]):
+            r = which[i]
+            for a in range(dofs.shape[2]):
+                if weights[k, r, a] != 0.0:
+                    place[k, begin + i, a] = rank[dofs[k, r, a]] * width + lane
+                    into[k, begin + i, a] = weights[k, r, a]
+
+
+@as_compiled
+def add_load(place: Any, weights: Any, into: Any, forces: Any, factor: float, shift: int, load: Any) -> Any:
     """Add loads of wheels with rows (n_wheel, n_local); the lowest place and the highest one that were loaded."""
     low, high = load.shape[0], -1
     for r in range(len(into)):
@@ -294,7 +289,7 @@ def _load(place: Any, weights: Any, into: Any, forces: Any, factor: float, shift
 
 
 @as_compiled
-def _predict_fleet(fleet: Any, p: Any, late: Any, wp: float, gaps: Any, gap: Any) -> None:
+def predict_fleet(fleet: Any, p: Any, late: Any, wp: float, gaps: Any, gap: Any) -> None:
     """Vehicles without the new contact forces; ``gap`` is that under their wheels on level ground."""
     forces, _, at_contacts, at_dofs, values, work, result, static, dofs, blocks, _, _, _ = fleet
     first, kind, begin, entries = blocks
@@ -311,7 +306,7 @@ def _predict_fleet(fleet: Any, p: Any, late: Any, wp: float, gaps: Any, gap: Any
 
 
 @as_compiled
-def _on_ground(fleet: Any, gap: Any) -> None:
+def on_ground(fleet: Any, gap: Any) -> None:
     """Forces of all wheels as if the ground were rigid."""
     forces, at_contacts, stiffness = fleet[0], fleet[2], fleet[10]
     starts, columns, entries = stiffness
@@ -323,7 +318,7 @@ def _on_ground(fleet: Any, gap: Any) -> None:
 
 
 @as_compiled
-def _take_fleet(fleet: Any, late: Any, tape: Any, k: int) -> None:
+def take_fleet(fleet: Any, late: Any, tape: Any, k: int) -> None:
     """Vehicles with the new contact forces; write them down."""
     forces, _, at_contacts, at_dofs, values, _, result, _, _, _, _, responses, coupled = fleet
     starts, columns, entries = responses
@@ -344,9 +339,9 @@ def _take_fleet(fleet: Any, late: Any, tape: Any, k: int) -> None:
 
 
 @as_compiled
-def _write(lanes: Any, state: Any, tape: Any, k: int) -> None:
+def write(lanes: Any, state: Any, tape: Any, k: int) -> None:
     """Write down what is watched of the structure after a step: d.o.f., and sums over all."""
-    near, rows, _, _, sums, (ends, of, at, values), lane = tape
+    near, rows, _, _, sums, (into_sum, of, ends, at, values), lane = tape
     u, v, a = state
     L = np.uint64(len(lanes))
     n = len(rows)
@@ -356,6 +351,7 @@ def _write(lanes: Any, state: Any, tape: Any, k: int) -> None:
         for i in range(n):
             where = np.uint64(rows[i]) * L + np.uint64(c)
             near[k, 0, into + i], near[k, 1, into + i], near[k, 2, into + i] = u[where], v[where], a[where]
+    sums[k, :, lane : lane + used] = 0.0
     sum_of_four = np.zeros(len(lanes))
     for s in range(len(of)):
         source = u if of[s] == 0 else (v if of[s] == 1 else a)
@@ -372,4 +368,4 @@ def _write(lanes: Any, state: Any, tape: Any, k: int) -> None:
             more += 1
         put(sum_of_four, np.uint64(0), plus(plus(t0, 1.0, t1), 1.0, plus(t2, 1.0, t3)))
         for c in range(used):
-            sums[k, s, lane + c] = sum_of_four[c]
+            sums[k, into_sum[s], lane + c] += sum_of_four[c]

@@ -9,19 +9,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cache
 from itertools import pairwise
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
 
-from axlespan.dynamics.block_step import BlockStepper
+from axlespan.dynamics.block_step import Blocks, BlockStepper
 from axlespan.errors import AnalysisError
 from axlespan.interaction.bodies import PreparedStructure, StructureBody
 from axlespan.interaction.contact_system import Stretch
 from axlespan.interaction.convoy import Convoy
-from axlespan.interaction.fused.banded_body import BandedBody, csr_parts
+from axlespan.interaction.fused.banded_body import PIECE, BandedBody, csr_parts
 from axlespan.interaction.fused.chunk import Chunk, chunks_of
+from axlespan.interaction.records.sums import Sums
 from axlespan.linalg.compiled import Loop
 
 FloatArray = npt.NDArray[np.float64]
@@ -41,6 +42,9 @@ def _march() -> Loop:
 class FusedMarch:
     """Consecutive steps of all lanes of a convoy."""
 
+    #: Whether a stretch must bring contact systems; the loop makes its own.
+    needs_systems = False
+
     def __init__(self, convoy: Convoy, body: BandedBody) -> None:
         self._convoy = convoy
         integrator = convoy.structure.integrator
@@ -56,13 +60,18 @@ class FusedMarch:
         blocks = [slice(a, b) for a, b in pairwise(ends)]
         self._chunks = chunks_of(body, (convoy.coupled, convoy.vehicle_dofs, blocks), _CHUNK, _WORTH_A_CHUNK)
         self._watched = body.rank[convoy.tape.watched.dofs]
-        self._sums = _compact(convoy.tape.watched.sums, body.rank)
+        self._sums = _pieces(convoy.tape.watched.sums, body.rank)
         for chunk in self._chunks:
             chunk.take(convoy.structure)
         self._stretch: Stretch | None = None
+        self._body = body
+        given = sp.csr_array((0, 0)) if convoy.fleet is None else convoy.fleet.compliance
+        symmetric = sp.csr_array(0.5 * (given + given.T))
+        symmetric.sort_indices()
+        self._compliance = csr_parts(symmetric)
 
     @classmethod
-    def of(cls, convoy: Convoy) -> FusedMarch | None:
+    def of(cls, convoy: Convoy) -> Self | None:
         """For a convoy whose structure and vehicles allow it, else None."""
         structure, fleet = convoy.structure, convoy.fleet
         if type(structure) is not StructureBody or type(convoy.prepared) is not PreparedStructure:
@@ -87,16 +96,41 @@ class FusedMarch:
         if stretch is not self._stretch:
             self._stretch = stretch
             convoy.tape.arrays[2][...] = convoy.joint.weight  # moving forces stay so
+            self._systems = self._systems_of(stretch)
             for chunk in self._chunks:
                 chunk.prepare(stretch, structure.lanes)
                 chunk.carry(structure, weight)
         forced = external is not None or bool(len(stretch.forced)) or weight != 0.0
         done = stop
         for chunk in self._chunks:
-            done = min(done, self._march(chunk, stretch, forced, external, first, stop))
+            own = min(stop, max(lane.left for lane in convoy.lanes[chunk.lane : chunk.lane + chunk.used]))
+            if first < own and (made := self._march(chunk, stretch, forced, external, first, own)) < own:
+                done = min(done, made)
         convoy.tape.filled = done
         if done < stop:
             raise AnalysisError(f"step {stretch.first + done}: the contact system is not positive definite")
+
+    def _systems_of(self, stretch: Stretch) -> list[tuple[Any, ...]]:
+        """What makes the contact systems of each chunk: contacts, wheels among them, vehicles and the path."""
+        convoy, columns = self._convoy, self._convoy.structure.columns
+        Z, row_of = columns.compliance, columns.position[self._body.rows]
+        path = (row_of, columns.offset, columns.low, columns.high, Z.reshape(-1), Z.shape[1])
+        owner = convoy.joint.vehicle_of
+        touched = np.zeros(int(owner.max(initial=-1)) + 1, dtype=bool)
+        touched[owner[stretch.into]] = True
+        result = []
+        for chunk in self._chunks:
+            own, wheel_ends, at = [np.empty(0, np.int64)], [0], [np.empty(0, np.int64)]
+            for lane in range(chunk.lane, chunk.lane + chunk.used):
+                contacts = convoy.coupled[lane]
+                own.append(contacts.start + np.flatnonzero(touched[owner[contacts]]))
+                into = stretch.into[(stretch.into >= contacts.start) & (stretch.into < contacts.stop)]
+                at.append(np.searchsorted(own[-1], into))
+                wheel_ends.append(wheel_ends[-1] + len(into))
+            ends = np.cumsum([0, *map(len, own[1:])]).astype(np.int64)
+            rows = (np.concatenate(own), ends, np.array(wheel_ends, dtype=np.int64), np.concatenate(at))
+            result.append((*rows, self._compliance, path))
+        return result
 
     def _march(
         self, chunk: Chunk, stretch: Stretch, forced: bool, external: FloatArray | None, first: int, stop: int
@@ -112,7 +146,7 @@ class FusedMarch:
             chunk.known(self._convoy.joint.weight),
             (self._vectors, np.empty((stretch.n_step, 0)) if external is None else external),
             self._fleet_of(chunk, stretch),
-            chunk.systems,
+            self._systems[self._chunks.index(chunk)],
             (near, self._watched, vehicles, forces, sums, self._sums, chunk.lane),
             first,
             stop,
@@ -137,8 +171,8 @@ class FusedMarch:
         if fleet is not None:
             fleet.forces = self._fleet[0].copy()
             if len(stretch.into):
-                on_line = fleet.forces[stretch.into]
-                coupled = structure.path_load(stretch.held[k], stretch.weights[k], on_line)
+                rows = stretch.rows(True, slice(k, k + 1))
+                coupled = structure.path_load(rows.held[0], rows.weights[0], fleet.forces[stretch.into])
                 load = coupled if load is None else coupled + load
         structure.settle(load)
 
@@ -152,32 +186,37 @@ def _fleet_arrays(convoy: Convoy) -> tuple[Any, ...]:
         return none, np.zeros((3, 0)), np.zeros((2, 0)), none, none, number, block, csr, csr, number
     stepper = fleet.stepper
     assert isinstance(stepper, BlockStepper)
-    b = stepper.blocks
+    n, parts = fleet.integrator.size, 3 if fleet.integrator.has_damping else 2
     return (
         fleet.forces.copy(),
         stepper.state.values,
-        np.zeros((3 if fleet.integrator.has_damping else 2, fleet.integrator.size)),
-        np.zeros(fleet.integrator.size),
+        np.zeros((parts, n)),
+        np.zeros(n + PIECE),
         fleet.static,
         fleet.fleet.dofs,
-        (b.first, b.kind, b.begin, b.entries),
+        _padded(stepper.blocks, parts),
         csr_parts(fleet.stiffness),
         csr_parts(fleet.columns),
         fleet.fleet.coupled,
     )
 
 
-def _compact(
-    sums: Sequence[tuple[FloatArray, int]], rank: IntArray
-) -> tuple[IntArray, IntArray, npt.NDArray[np.uint64], FloatArray]:
-    """Weighted sums over the structure by their nonzero weights: ends, quantities, rows, weights."""
-    parts = [(np.flatnonzero(vector), vector, which) for vector, which in sums]
-    ends = np.cumsum([0, *(len(at) for at, _, _ in parts)]).astype(np.int64)
-    of = np.array([which for _, _, which in parts], dtype=np.int64)
-    at = np.concatenate([np.empty(0, np.int64), *(rank[at] for at, _, _ in parts)])
-    return (
-        ends,
-        of,
-        at.astype(np.uint64),
-        np.concatenate([np.empty(0), *(vector[at] for at, vector, _ in parts)]),
-    )
+def _padded(blocks: Blocks, parts: int) -> tuple[IntArray, IntArray, IntArray, FloatArray]:
+    """Blocks of vehicles with columns in one piece each, padded so that compiled loops read them by eights."""
+    begins, padded, filled = [], [], 0
+    for kind, begin in enumerate(blocks.begin.tolist()):
+        like = int(np.flatnonzero(blocks.kind == kind)[0])
+        n = int(blocks.first[like + 1] - blocks.first[like])
+        rows = blocks.entries[begin : begin + n * parts * n].reshape(n, parts * n)
+        padded.append(np.pad(rows.T, ((0, 0), (0, -n % PIECE))).ravel())
+        begins.append(filled)
+        filled += padded[-1].size
+    return blocks.first, blocks.kind, np.array(begins, dtype=np.int64), np.concatenate(padded)
+
+
+def _pieces(
+    sums: Sums, rank: IntArray
+) -> tuple[IntArray, IntArray, IntArray, npt.NDArray[np.uint64], FloatArray]:
+    """Weighted sums over the structure, as the loop wants them: sums, quantities, ends, rows, weights."""
+    row, which, ends, dofs, weights = sums.pieces()
+    return row, which, ends, rank[dofs].astype(np.uint64), weights

@@ -44,6 +44,10 @@ class Balance:
         system = plan.crossing.structure.system
         self._vertical = system.translation("z")[system.free]
 
+    def for_plan(self, plan: Plan) -> Balance:
+        """The same for another time step of the crossing; not smoothed yet."""
+        return Balance(plan, self.laws, self._factors)
+
     def smoothed(self, structure: Factor, vehicles: Factor) -> None:
         """Use the factors of the effective matrices from now on."""
         self._effective = structure, vehicles

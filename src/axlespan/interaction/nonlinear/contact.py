@@ -38,6 +38,25 @@ Mask = npt.NDArray[np.bool_]
 _RELEASES = 3  # how often a step is repeated because a wheel lets go
 
 
+class StepNotConverged(AnalysisError):
+    """The interface of a step has not converged: bodies and springs stand at the step before.
+
+    Parameters
+    ----------
+    message : str
+    where : str
+        The wheel or spring with the largest residual.
+    residual : float
+        That residual [N].
+    iterations : int
+        Made in vain.
+    """
+
+    def __init__(self, message: str, where: str, residual: float, iterations: int) -> None:
+        self.where, self.residual, self.iterations = where, residual, iterations
+        super().__init__(message)
+
+
 @dataclass(frozen=True, eq=False)
 class _Group:
     """Wheels whose interfaces do not feel each other: rows (n_group, n_wheel) and compliance."""
@@ -76,6 +95,7 @@ class NonlinearCoupling:
     ) -> None:
         self.laws, self.balance, self.field, self.flights = laws, balance, field, flights
         self.approach, self.before = approach.copy(), approach.copy()  # of the last two steps
+        self.earlier = self.before  # of the step before those
         self.touching = touching.copy()
         held = np.concatenate([balance.plan.fleet.weight, field.springs.held])
         self.scale = max(float(np.abs(held).max(initial=0.0)), 1.0)
@@ -95,8 +115,10 @@ class NonlinearCoupling:
 
         Raises
         ------
+        StepNotConverged
+            If the interface does not converge.
         AnalysisError
-            If the interface does not converge, a vehicle is lost or a wheel chatters.
+            If a vehicle is lost or a wheel chatters.
         """
         structure, fleet = convoy.structure, convoy.fleet
         if self._stretch is not stretch:
@@ -187,13 +209,15 @@ class NonlinearCoupling:
             return 0
         S, w, count = self._system(stretch, k), len(contacts), 0
         into = np.searchsorted(contacts, stretch.into)
-        field.meet(stretch.held[k], stretch.weights[k], into, contacts)
+        field.meet(stretch.flat[k], stretch.weights[k], into, contacts)
+        outer = guess[contacts]
         while True:
             system, given, inner = field.joined(S, free[contacts])
-            start = np.concatenate([guess[contacts], inner])
+            start = np.concatenate([outer, inner])
             solution = self._solved(stretch.first + k, contacts, system, given, start, field)
             count += len(solution.residuals)
-            if field.settle(structure, solution.forces[:w], solution.forces[w:]):
+            outer = solution.forces[:w]
+            if field.settle(structure, outer, solution.forces[w:]):
                 break
         forces[contacts], approach[contacts] = solution.forces[:w], solution.coordinates[:w]
         return count
@@ -313,8 +337,21 @@ class NonlinearCoupling:
             convoy.lanes[0].recorder.restarted[step] = self._balanced(convoy, rows, time, forces)
             self.touching = laws.rigid | (laws.unilateral & (fleet.forces > 0.0))
             self.landings, self.loss = self.landings + int(landed.sum()), self.loss + loss
-        self.before, self.approach = self.approach, approach
+        self.earlier, self.before, self.approach = self.before, self.approach, approach
         self.flights.look(step, laws.may_part & ~(fleet.forces > 0.0), landed, approach, closing)
+
+    def went(self, step: int, counts: IntArray, approaches: FloatArray) -> None:
+        """Take over iterations of steps that were made elsewhere, and approaches (3, n_coupled) of the last three."""
+        self.iterations.extend(counts.tolist())
+        self.approach, self.before, self.earlier = approaches
+        nobody = np.zeros(len(self.approach), dtype=bool)
+        if len(nobody):
+            self.flights.look(step, nobody, nobody, self.approach, self.approach)
+
+    @property
+    def time_step(self) -> float:
+        """Δt [s]."""
+        return self._dt
 
     def _closing_rates(self, free: FloatArray) -> FloatArray:
         """Rates (n_coupled,) [m/s] at which gaps close when they do, from the last approaches and the free one."""
@@ -326,7 +363,7 @@ class NonlinearCoupling:
 
     def _stuck(
         self, step: int, wheels: IntArray, error: NotConverged, field: SpringField | None
-    ) -> AnalysisError:
+    ) -> StepNotConverged:
         """Say which step did not converge, where it is worst, and what to do."""
         w = wheels.size
         if error.row < w:
@@ -335,11 +372,12 @@ class NonlinearCoupling:
         else:
             assert field is not None
             where = f"spring {field.springs.names[int(field.active[error.row - w])]}"
-        return AnalysisError(
+        message = (
             f"step {step}, t = {step * self._dt:.6g} s: the interface of wheels and springs did not converge in "
             f"{len(error.residuals)} iterations (residual {error.residuals[-1]:.3g} N, worst at {where}). Use a smaller "
             "time step, or a law without jumps of its tangent"
         )
+        return StepNotConverged(message, where, error.residuals[-1], len(error.residuals))
 
     def facts(self) -> dict[str, object]:
         """What the summary says of the iterations and landings."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
@@ -54,17 +55,20 @@ class Flights:
         fleet = plan.fleet
         self.names = [plan.crossing.contact_names[i] for i in fleet.coupled]
         self.in_air = in_air.copy()  # at time zero
-        self._since = np.where(in_air, 0, -1)  # step of the lift-off
+        self._since = np.where(in_air, 0.0, -1.0)  # step of the lift-off
         self._gap = np.zeros(len(in_air))
         self._landings = np.full((len(in_air), _LANDINGS), -10 * _WITHIN)
         self._vehicles = fleet.vehicle_of
         self._first = np.searchsorted(fleet.vehicle_of, np.unique(fleet.vehicle_of))
-        self._last = 0
+        self._last = 0.0
 
-    def look(self, step: int, in_air: Mask, struck: Mask, approach: FloatArray, closing: FloatArray) -> None:
+    def look(
+        self, step: float, in_air: Mask, struck: Mask, approach: FloatArray, closing: FloatArray
+    ) -> None:
         """Look at a completed step: wheels in the air, those that struck the line, approaches [m], closing speeds [m/s].
 
-        A wheel may strike the line and be in the air again at once: two flights.
+        A wheel may strike the line and be in the air again at once: two flights. Of a step that was cut, ``step`` is a
+        fraction.
 
         Raises
         ------
@@ -82,21 +86,26 @@ class Flights:
         self._since = np.where(in_air, np.where(flew & ~ended, self._since, step), -1)
         self._lost(step)
 
-    def _close(self, wheel: int, step: int, closing: float) -> None:
+    @property
+    def any_in_air(self) -> bool:
+        """Whether a wheel is in the air."""
+        return bool((self._since >= 0).any())
+
+    def _close(self, wheel: int, step: float, closing: float) -> None:
         landings = self._landings[wheel]
-        landings[:-1], landings[-1] = landings[1:].copy(), step
+        landings[:-1], landings[-1] = landings[1:].copy(), math.ceil(step)
         self._add(wheel, step, closing, landed=True)
         if landings[-1] - landings[0] < _WITHIN:
             raise AnalysisError(
-                f"step {step}, t = {self._time(step):.6g} s: contact {self.names[wheel]} chatters, with {_LANDINGS} "
+                f"step {math.ceil(step)}, t = {self._time(step):.6g} s: contact {self.names[wheel]} chatters, with {_LANDINGS} "
                 f"landings in {_WITHIN} steps. Use a smaller time step, alpha: -0.1, a footprint, or contact: hertz"
             )
 
-    def _add(self, wheel: int, step: int, closing: float, *, landed: bool) -> None:
+    def _add(self, wheel: int, step: float, closing: float, *, landed: bool) -> None:
         self.count += 1
         if len(self.flights) >= LISTED:
             return
-        begin = int(self._since[wheel])
+        begin = float(self._since[wheel])
         times = np.array([self._time(begin), self._time(step)])
         start, stop = self.plan.rows.positions(times)[:, self.plan.fleet.coupled[wheel]].tolist()
         flight = Flight(
@@ -105,18 +114,18 @@ class Flights:
         self.flights.append(replace(flight, landed=landed))
         self._gap[wheel] = 0.0
 
-    def _lost(self, step: int) -> None:
+    def _lost(self, step: float) -> None:
         since = np.where(self._since >= 0, self._since, step)
         latest = np.maximum.reduceat(since, self._first)  # of each vehicle, the wheel that left last
         lost = np.flatnonzero(self._time(step) - latest * self.plan.settings.time_step > self._lost_after)
         if len(lost):
             name = self.names[int(self._first[lost[0]])].partition(".")[0]
             raise AnalysisError(
-                f"step {step}, t = {self._time(step):.6g} s: vehicle {name} is lost: all its wheels have been in the air "
-                f"for {self._lost_after:g} s. Check speed, irregularity and masses, or allow more with lost_after"
+                f"step {math.ceil(step)}, t = {self._time(step):.6g} s: vehicle {name} is lost: all its wheels have been in "
+                f"the air for {self._lost_after:g} s. Check speed, irregularity and masses, or allow more with lost_after"
             )
 
-    def _time(self, step: int) -> float:
+    def _time(self, step: float) -> float:
         return step * self.plan.settings.time_step
 
     def checks(self) -> dict[str, Any]:
@@ -125,3 +134,34 @@ class Flights:
             self._add(wheel, self._last, 0.0, landed=False)
         self._since[:] = -1
         return {"flight_count": self.count, "flights": [asdict(flight) for flight in self.flights]}
+
+
+class HeldFlights(Flights):
+    """Remembers what it is shown of the parts of a step, and tells another one when the whole step is made."""
+
+    def __init__(self, of: Flights, parts: int) -> None:
+        super().__init__(of.plan, of.in_air, math.inf)
+        self._of, self._parts = of, parts
+        self._shown: list[tuple[float, Mask, Mask, FloatArray, FloatArray]] = []
+
+    def look(
+        self, step: float, in_air: Mask, struck: Mask, approach: FloatArray, closing: FloatArray
+    ) -> None:
+        """Remember a part, by its own time index."""
+        self._shown.append((step / self._parts, in_air, struck, approach, closing))
+
+    def forget(self) -> None:
+        """The parts are to be made again."""
+        self._shown = []
+
+    def tell(self) -> None:
+        """The step is made.
+
+        Raises
+        ------
+        AnalysisError
+            As :meth:`Flights.look`.
+        """
+        for shown in self._shown:
+            self._of.look(*shown)
+        self._shown = []

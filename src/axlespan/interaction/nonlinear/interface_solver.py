@@ -28,9 +28,16 @@ Mask = npt.NDArray[np.bool_]
 Evaluate = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 
 # A Newton step below this share of the scale ends the iteration: the error is then about its square.
-_TOLERANCE = 1e-11
-_ROUNDING = 1e-14  # a residual below this share of it is zero
-_LIMIT, _HALVINGS = 60, 8
+TOLERANCE = 1e-11
+ROUNDING = 1e-14  # a residual below this share of it is zero
+LIMIT, HALVINGS = 60, 8
+# Of a search for where a potential is flat along a step: bisections, and the share of its first slope that is flat.
+_BISECTIONS, _FLAT = 60, 0.02
+_WELL = 0.25  # a step after which this share of the squared residual is left goes well, whatever a potential does
+
+
+#: Forces, residual [N], Jacobian, and which rows touch.
+Trial = tuple[FloatArray, FloatArray, FloatArray, Mask | None]
 
 
 class NotConverged(AxlespanError, ArithmeticError):
@@ -83,23 +90,26 @@ def solve_interface(
     newton = _Newton(system, free, interface)
     forces, residuals = guess.copy(), []
     residual, jacobian, held = newton.at(forces)
-    for _ in range(_LIMIT):
+    before = residual
+    for _ in range(LIMIT):
         size = float(np.abs(residual).max(initial=0.0))
         residuals.append(size / interface.scale)
         if not np.isfinite(size):
             break
-        if size <= _ROUNDING * interface.scale:
+        if size <= ROUNDING * interface.scale:
             return Solution(forces, newton.coordinates(forces), residuals)
         step = np.asarray(np.linalg.solve(jacobian, residual[..., None])[..., 0], dtype=np.float64)
+        before = residual
         forces, residual, jacobian, now = newton.advance(forces, step, residual)
         same = held is None or now is None or np.array_equal(held, now)
         held = now
-        if same and float(np.abs(step).max(initial=0.0)) <= _TOLERANCE * interface.scale:
+        if same and float(np.abs(step).max(initial=0.0)) <= TOLERANCE * interface.scale:
             return Solution(forces, newton.coordinates(forces), residuals)
     if interface.evaluate is None and np.all(np.isfinite(free)):
         forces = _one_by_one(system, free, interface.unilateral)
         return Solution(forces, newton.coordinates(forces), residuals)
-    row = int(np.argmax(np.nan_to_num(np.abs(residual), nan=np.inf)))
+    told = residual if np.isfinite(residual).any() else before
+    row = int(np.argmax(np.nan_to_num(np.abs(told), nan=np.inf)))
     raise NotConverged([value * interface.scale for value in residuals], row)
 
 
@@ -137,24 +147,53 @@ class _Newton:
         jacobian[(*where, where[-1])] = 1.0
         return residual, jacobian, held
 
-    def advance(
-        self, forces: FloatArray, step: FloatArray, residual: FloatArray
-    ) -> tuple[FloatArray, FloatArray, FloatArray, Mask | None]:
-        """Go a Newton step, or so much of it that the residual falls; all of it where no share does.
+    def advance(self, forces: FloatArray, step: FloatArray, residual: FloatArray) -> Trial:
+        """Go a Newton step, or so much of it that a potential or the residual falls; all of it where no share does.
 
         Constraints alone ask for whole steps: that is the active set method.
         """
         whole = (forces - step, *self.at(forces - step))
         if self._all:
             return whole
-        found, share, size = whole, 1.0, float(np.vdot(residual, residual))
-        for _ in range(_HALVINGS):
-            if float(np.vdot(found[1], found[1])) <= (1.0 - 1e-4 * share) * size:
-                return found
+        size, new = float(np.vdot(residual, residual)), float(np.vdot(whole[1], whole[1]))
+        if new <= _WELL * size:
+            return whole
+        found = self._bracketed(forces, step, residual, whole) if forces.ndim == 1 else None
+        if found is not None:
+            return found
+        if new <= (1.0 - 1e-4) * size:
+            return whole
+        share = 1.0
+        for _ in range(HALVINGS):
             share *= 0.5
             tried = forces - share * step
             found = (tried, *self.at(tried))
+            if float(np.vdot(found[1], found[1])) <= (1.0 - 1e-4 * share) * size:
+                return found
         return whole
+
+    def _bracketed(
+        self, forces: FloatArray, step: FloatArray, residual: FloatArray, whole: Trial
+    ) -> Trial | None:
+        """So much of a Newton step that goes too far that a potential is flat along it; None if it does not.
+
+        Laws that rise have one: its slope along the step is that of the residual with S times the step, over their
+        rows. Constraints hold already, since they are linear.
+        """
+        push = np.where(self.constrained, 0.0, self.S @ step)
+        begin, end = float(residual @ push), float(whole[1] @ push)
+        if not (begin > 0.0 and end < -_FLAT * begin):
+            return None
+        low, high, found = 0.0, 1.0, whole
+        for _ in range(_BISECTIONS):
+            share = 0.5 * (low + high)
+            tried = forces - share * step
+            found = (tried, *self.at(tried))
+            slope = float(found[1] @ push)
+            if abs(slope) <= _FLAT * begin:
+                break
+            low, high = (share, high) if slope > 0.0 else (low, share)
+        return found
 
 
 def _one_by_one(system: FloatArray, free: FloatArray, unilateral: Mask) -> FloatArray:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from axlespan.interaction.convoy import Couple
 from axlespan.interaction.nonlinear.balance import Balance
 from axlespan.interaction.nonlinear.contact import NonlinearCoupling
 from axlespan.interaction.nonlinear.flights import Flights
 from axlespan.interaction.nonlinear.spring_field import SpringField
 from axlespan.interaction.nonlinear.springs import Springs
 from axlespan.interaction.nonlinear.start import nonlinear_start
+from axlespan.interaction.nonlinear.step_cutting import StepCutting
 from axlespan.interaction.plan import Plan
 from axlespan.interaction.records.recorder import Recorder
 from axlespan.interaction.start import Start, StartFactors
@@ -54,3 +56,13 @@ def watch(coupling: NonlinearCoupling, recorder: Recorder) -> None:
         recorder.notes.append(
             f"in the air at the start, since static equilibrium leaves them unloaded: {', '.join(names)}"
         )
+
+
+def with_cutting(coupling: NonlinearCoupling, recorder: Recorder) -> Couple:
+    """The coupling, with steps cut where they do not converge: as often as the settings say, on the full basis."""
+    settings = recorder.plan.settings
+    if not settings.cuts or settings.basis != "full":
+        return coupling
+    cutting = StepCutting(coupling, recorder, settings.cuts)
+    recorder.more_facts = lambda: coupling.facts() | cutting.facts()
+    return cutting

@@ -11,18 +11,18 @@ taken in, and the step is solved again.
 
 from __future__ import annotations
 
+from copy import copy
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
-import scipy.sparse as sp
 
 from axlespan.interaction.bodies import FleetBody, StructureBody
+from axlespan.interaction.nonlinear.spring_columns import SpringColumns
 from axlespan.interaction.nonlinear.springs import Springs
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
-
-# Columns of springs that are solved for at a time.
-_BLOCK = 64
 
 
 class SpringField:
@@ -52,51 +52,64 @@ class SpringField:
         self.active = self._active()
         self.largest = len(self.active)  # unknowns of a step, so far
         self.history = [self.q]  # of the start and each step, where springs stand on supports
-        self._columns: FloatArray | None = None
+        self._columns: SpringColumns | None = None
+        self._of_fleet: FloatArray | None = None  # compliance (n_fleet, n_fleet) of springs of vehicles [m/N]
+        self._found = self.q, self.e, self.rate  # of the last attempt of a step
         self._response: FloatArray | None = None  # of the last attempt of a step, to loads on the structure
+
+    def for_time_step(self) -> SpringField:
+        """The same springs, which share their memory, for bodies at another time step."""
+        other = copy(self)
+        other._columns = other._of_fleet = None
+        other.history = []
+        return other
+
+    @property
+    def standing(self) -> tuple[Any, ...]:
+        """The last completed step, to come back to after an attempt that failed."""
+        return self.q, self.e, self.rate, self.active, self.springs.state
+
+    def back_to(self, standing: tuple[Any, ...]) -> None:
+        """Come back to what stood at a completed step."""
+        self.q, self.e, self.rate, self.active, self.springs.state = standing
+
+    def resume(self, other: SpringField) -> None:
+        """Stand where the same springs at another time step stand: that is the last completed step."""
+        self.q, self.e, self.rate, self.active = other.q, other.e, other.rate, other.active
+        self.largest = max(self.largest, other.largest)
+        if self._ground.nnz:
+            self.history.append(self.q)
 
     # --- compliance ------------------------------------------------------------------------------
 
     def enter(self, structure: StructureBody, fleet: FleetBody | None) -> None:
-        """Have the columns of the springs and of the path d.o.f. at hand that a stretch needs."""
+        """Have at hand what a stretch needs."""
         if not self.n:
             return
-        if self._columns is None:
-            self._columns = np.zeros((self.n, self.n))
-            self._solve_structure(structure)
+        self._rate_from_e = structure.integrator.v_from_a / structure.integrator.u_from_a
+        self._time_step = structure.integrator.time_step
+        self.columns(structure)
+        if fleet is not None and self.n_fleet and self._of_fleet is None:
             self._solve_fleet(fleet)
-            self._rate_from_e = structure.integrator.v_from_a / structure.integrator.u_from_a
-        self._path = self._all_path[self._place[structure.columns.held]]  # (n_held, n_own)
 
-    def _solve_structure(self, structure: StructureBody) -> None:
-        assert self._columns is not None
-        integrator, path, n = structure.integrator, structure.columns.path_dofs, self.n_own
-        scale = integrator.weight_c * integrator.u_from_a
-        Z, on_path = np.empty((n, n)), np.empty((len(path), n))
-        for begin in range(0, n, _BLOCK):
-            some = slice(begin, min(begin + _BLOCK, n))
-            block = integrator.factor.solve(_dense_columns(self._rows[some]))
-            Z[:, some], on_path[:, some] = self._rows @ block, block[path]
-        self._columns[:n, :n] = 0.5 * scale * (Z + Z.T)
-        self._place = np.zeros(integrator.size, dtype=np.int64)
-        self._place[path] = np.arange(len(path))
-        self._all_path = scale * on_path
-
-    def _solve_fleet(self, fleet: FleetBody | None) -> None:
-        if fleet is None or not self.n_fleet:
-            return
-        assert self._columns is not None
+    def _solve_fleet(self, fleet: FleetBody) -> None:
         scale = fleet.integrator.weight_c * fleet.integrator.u_from_a
         solved = fleet.integrator.factor.solve(np.ascontiguousarray(self._rows_fleet.T.toarray()))
         Z = np.asarray(self._rows_fleet @ solved)
-        self._columns[self.n_own :, self.n_own :] = 0.5 * scale * (Z + Z.T)
+        self._of_fleet = 0.5 * scale * (Z + Z.T)
         self._of_wheels = -scale * solved[fleet.fleet.dofs]  # (n_coupled, n_fleet)
         self._fleet_responses = -fleet.integrator.weight_c * solved
+
+    def columns(self, structure: StructureBody) -> SpringColumns:
+        """What unit forces of the structure's springs do in a step."""
+        if self._columns is None:
+            self._columns = SpringColumns(structure.integrator, self._rows, structure.columns.path_dofs)
+        return self._columns
 
     # --- a step ----------------------------------------------------------------------------------
 
     def predict(self, structure: StructureBody, fleet: FleetBody | None) -> None:
-        """Elongations and rates of the free response."""
+        """Elongations and rates of the free response; unknown are springs that deviate, or will if they go on so."""
         if not self.n:
             return
         bodies = [(structure.stepper, self._dofs, self._local)]
@@ -106,6 +119,9 @@ class SpringField:
             [np.asarray(local @ body.displacement(at)) for body, at, local in bodies]
         )
         self.rate_free = np.concatenate([np.asarray(local @ body.velocity(at)) for body, at, local in bodies])
+        ahead = self.springs.deviation(self.e + self._time_step * self.rate, self.rate)
+        self._guess = np.where(np.isfinite(ahead), ahead, self.q)  # an element may not reach so far
+        self._take_in(self._guess != 0.0)
 
     @property
     def busy(self) -> bool:
@@ -117,13 +133,13 @@ class SpringField:
     def rest(self) -> None:
         """A step in which no spring deviates and no wheel is there."""
         self._response = None
-        self.q, self.e, self.rate = np.zeros(self.n), self.e_free, self.rate_free
+        self._found = np.zeros(self.n), self.e_free, self.rate_free
 
-    def meet(self, held: IntArray, weights: FloatArray, at: IntArray, contacts: IntArray) -> None:
+    def meet(self, dofs: IntArray, weights: FloatArray, at: IntArray, contacts: IntArray) -> None:
         """Note which d.o.f. the wheels on the structure load (n_wheel, n_local), and their places in the interface."""
-        if not self.n_own or not len(self._path):  # no wheel is on the structure yet
-            at, held, weights = at[:0], held[:0], weights[:0]
-        self._held, self._weights, self._at, self._contacts = held, weights, at, contacts
+        if not self.n_own or not np.any(weights):  # no wheel is on the structure yet
+            at, dofs, weights = at[:0], dofs[:0], weights[:0]
+        self._under, self._weights, self._at, self._contacts = dofs, weights, at, contacts
 
     def joined(self, S: FloatArray, gap: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Compliance, free coordinates and guessed deviations of the wheels and the active springs together."""
@@ -133,18 +149,21 @@ class SpringField:
         assert self._columns is not None
         system = np.zeros((w + len(a), w + len(a)))
         system[:w, :w] = S
-        own = a < self.n_own
-        if len(self._at) and own.any():
-            path = self._path[self._held[:, :, None], a[own]]
-            cross = np.einsum("ij,ijk->ik", self._weights, path)
-            columns = w + np.flatnonzero(own)
-            system[np.ix_(self._at, columns)], system[np.ix_(columns, self._at)] = cross, cross.T
-        if not own.all() and w:
-            cross = self._of_wheels[np.ix_(self._contacts, a[~own] - self.n_own)]
-            columns = w + np.flatnonzero(~own)
-            system[:w, columns], system[columns, :w] = cross, cross.T
-        system[w:, w:] = self._columns[np.ix_(a, a)]
-        return system, np.concatenate([gap, self.e_free[a]]), self.q[a]
+        m = int(np.searchsorted(a, self.n_own))  # the structure's own come first
+        if m:
+            own = slice(w, w + m)
+            system[own, own] = self._columns.between(a[:m])
+            if len(self._at):
+                cross = self._columns.under(self._under, self._weights, a[:m])
+                system[self._at, own], system[own, self._at] = cross, cross.T
+        if m < len(a):
+            assert self._of_fleet is not None
+            others = a[m:] - self.n_own
+            system[w + m :, w + m :] = self._of_fleet[np.ix_(others, others)]
+            if w:
+                cross = self._of_wheels[np.ix_(self._contacts, others)]
+                system[:w, w + m :], system[w + m :, :w] = cross, cross.T
+        return system, np.concatenate([gap, self.e_free[a]]), self._guess[a]
 
     def evaluate(self, e: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Deviations of the active springs at their elongations, and their derivatives: (n,), or (n, n) with elements."""
@@ -160,11 +179,15 @@ class SpringField:
         """Springs that deviate, and all that are d.o.f. of elements."""
         return np.union1d(np.flatnonzero(self.q), self.springs.coupled).astype(np.int64)
 
+    def _take_in(self, springs: npt.NDArray[np.bool_]) -> None:
+        """Have some more springs as unknowns."""
+        self.active = np.union1d(self.active, np.flatnonzero(springs))
+        self.largest = max(self.largest, len(self.active))
+
     def settle(self, structure: StructureBody, forces: FloatArray, deviation: FloatArray) -> bool:
         """Take a solution; false where springs deviate that were left out: they are active from now on."""
         if not self.n:
             return True
-        assert self._columns is not None
         q = np.zeros(self.n)
         q[self.active] = deviation
         e = self.e_free.copy()
@@ -172,19 +195,20 @@ class SpringField:
         if self._response is not None:
             moved = structure.integrator.u_from_a * self._response[self._dofs]
             e[: self.n_own] += np.asarray(self._local @ moved)
-        if self.n_fleet:
+        if self._of_fleet is not None:
             own = slice(self.n_own, None)
-            e[own] -= self._columns[own, own] @ q[own]
+            e[own] -= self._of_fleet @ q[own]
             if len(forces):
                 e[own] -= forces @ self._of_wheels[self._contacts]
         rate = self.rate_free + self._rate_from_e * (e - self.e_free)
-        left_out = self.springs.deviation(e, rate) != 0.0
+        all_of_them = self.springs.deviation(e, rate)
+        left_out = all_of_them != 0.0
         left_out[self.active] = False
-        self.q, self.e, self.rate = q, e, rate
+        self._found = q, e, rate
         if not left_out.any():
             return True
-        self.active = np.union1d(self.active, np.flatnonzero(left_out))
-        self.largest = max(self.largest, len(self.active))
+        self._guess = np.where(left_out, all_of_them, q)
+        self._take_in(left_out)
         return False
 
     def _respond(self, structure: StructureBody, forces: FloatArray, inner: FloatArray) -> None:
@@ -194,10 +218,9 @@ class SpringField:
             return
         total = np.asarray(self._rows.T @ inner)
         if len(self._at):
-            loads = (self._weights * forces[self._at][:, None]).ravel()
-            total[structure.columns.held] += np.bincount(
-                self._held.ravel(), loads, minlength=len(structure.columns.held)
-            )
+            loads = self._weights * forces[self._at][:, None]
+            there = self._weights != 0.0
+            total += np.bincount(self._under[there], loads[there], minlength=len(total))
         if np.any(total):
             integrator = structure.integrator
             self._total = total
@@ -206,6 +229,7 @@ class SpringField:
     def take(self, structure: StructureBody, load: FloatArray | None, known: FloatArray | None) -> None:
         """Give the structure the loads of the wheels (n_held,) and the springs, and complete the step."""
         if self.n:
+            self.q, self.e, self.rate = self._found
             self.springs.advance(self.e, self.rate)
             self.active = self._active()
             if self._ground.nnz:
@@ -219,6 +243,17 @@ class SpringField:
         structure.stepper.finish()
         structure.carry(self._total)
         self._response = None
+
+    def went(self, last: FloatArray, largest: int, history: FloatArray) -> None:
+        """Take over steps that were made elsewhere: last deviations, elongations and rates (3, n), all deviations."""
+        self.q, self.e, self.rate = last
+        self.active, self.largest = self._active(), largest
+        self.history.extend(history)
+
+    @property
+    def on_ground(self) -> bool:
+        """Whether springs stand on supports."""
+        return bool(self._ground.nnz)
 
     def take_fleet(self, fleet: FleetBody, forces: FloatArray) -> None:
         """Give the vehicles the contact forces (n_coupled,) and their springs, and complete the step."""
@@ -249,11 +284,3 @@ class SpringField:
         if not self.n:
             return {}
         return {"nonlinear_springs": self.n, "nonlinear_springs_active": self.largest}
-
-
-def _dense_columns(rows: sp.csr_array) -> FloatArray:
-    """The transpose (n, m) of sparse rows (m, n), row by row in memory."""
-    entries = rows.tocoo()
-    result = np.zeros((rows.shape[1], rows.shape[0]))
-    result[entries.col, entries.row] = entries.data
-    return result

@@ -20,6 +20,7 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from axlespan.errors import InputError
+from axlespan.interaction.nonlinear.static_columns import StaticColumns
 from axlespan.interaction.plan import Plan
 from axlespan.linalg.factor import Factor
 from axlespan.model.motions import Constant
@@ -217,31 +218,37 @@ class Springs:
         """
         if not self.n:
             return self
-        columns = stiffness.solve(np.ascontiguousarray(self.rows.T.toarray()))
-        compliance = np.asarray(self.rows @ columns)
         free = np.asarray(self.rows @ stiffness.solve(np.array(weight)))
-        e = self._rest(free, 0.5 * (compliance + compliance.T))
+        e = self._rest(free, StaticColumns(self.rows, stiffness))
         before = Springs(self.groups, self.rows, self.ground, self.base.copy(), list(self.state))
         before.advance(e, np.zeros(self.n))
         return Springs(self.groups, self.rows, self.ground, self.base + e, before.state)
 
-    def _rest(self, free: FloatArray, compliance: FloatArray) -> FloatArray:
-        """Elongations (n,) of rest: e = e* - Z q(e), by Newton's method with line search."""
+    def _rest(self, free: FloatArray, columns: StaticColumns) -> FloatArray:
+        """Elongations (n,) of rest: e = e* - Z q(e), by Newton's method with line search; unknown are springs with q ≠ 0."""
         still, start = np.zeros(self.n), self.held + 0.0
 
         def residual(q: FloatArray) -> tuple[FloatArray, FloatArray]:
-            e = free - compliance @ q
-            return q - (self.deviation(e, still) + start), e
+            e = free - self.rows @ columns.deflection(q)
+            rest = q - (self.deviation(e, still) + start)
+            return rest, e
 
         q = np.zeros(self.n)
         rest, e = residual(q)
         scale = max(float(np.abs(self.stiffness * free).max()), 1.0)
         for _ in range(_LIMIT):
+            slope = self.static_deviation(e)[1]
+            varies = slope != 0.0 if slope.ndim == 1 else np.any(slope != 0.0, axis=1)
+            columns.take_in(np.setdiff1d(np.flatnonzero((rest != 0.0) | varies), columns.chosen))
             if float(np.abs(rest).max()) <= _TOLERANCE * scale:
                 return e
-            jacobian = slope_times(self.static_deviation(e)[1], compliance)
+            a = columns.chosen
+            jacobian = slope_times(
+                slope[a] if slope.ndim == 1 else slope[np.ix_(a, a)], columns.compliance(a)
+            )
             jacobian[np.diag_indices_from(jacobian)] += 1.0
-            step = np.linalg.solve(jacobian, rest)
+            step = np.zeros(self.n)
+            step[a] = np.linalg.solve(jacobian, rest[a])
             share = 1.0
             for _ in range(_HALVINGS):
                 new, at = residual(q - share * step)

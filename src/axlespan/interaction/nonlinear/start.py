@@ -23,6 +23,7 @@ from axlespan.dynamics.integrator import State
 from axlespan.errors import AnalysisError
 from axlespan.interaction.nonlinear.balance import Balance
 from axlespan.interaction.nonlinear.springs import Springs, slope_times
+from axlespan.interaction.nonlinear.static_columns import StaticColumns
 from axlespan.interaction.plan import Plan
 from axlespan.interaction.start import (
     ContactRows,
@@ -35,6 +36,7 @@ from axlespan.interaction.start import (
 from axlespan.linalg.factor import factorize
 
 FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
 
 _LIMIT, _TOLERANCE, _HALVINGS = 100, 1e-12, 10
 _FOLLOWS = 100  # iterations of the approaches of wheels that follow the line
@@ -163,20 +165,14 @@ class _Statics:
             external = external - at_rest[forced].T @ fleet.weight[forced]
         E = at_rest[x]
         self._B = sp.csr_array(sp.vstack([E, springs.rows])) if springs.n else E
-        n = plan.structure.size
-        self.columns = np.zeros((n, len(x) + springs.n))
-        self.u_0 = np.zeros(n)
+        self._columns, self._factor = StaticColumns(self._B, factors.stiffness), factors.stiffness
+        self._columns.take_in(np.flatnonzero(np.asarray(abs(E).sum(axis=1)) > 0.0))
+        self.u_0 = np.zeros(plan.structure.size)
         if np.any(external):
             self.u_0 = factors.stiffness.solve(np.array(external))
-        loaded = np.flatnonzero(np.asarray(abs(self._B).sum(axis=1)) > 0.0)
-        if len(loaded):
-            self.columns[:, loaded] = factors.stiffness.solve(
-                np.ascontiguousarray(self._B[loaded].T.toarray())
-            )
-        Z = np.asarray(self._B @ self.columns)
-        self.Z = 0.5 * (Z + Z.T)
         self.free = np.asarray(self._B @ self.u_0)
         self.free[: len(x)] += rows.height[x]
+        self.active = np.empty(0, dtype=np.int64)  # springs that are unknown: others follow their reference
         self.n_wheel = len(x)
         self.scale = max(float(np.abs(fleet.weight).max(initial=0.0)), 1.0)
         # A stiffness that turns gaps into forces, to tell who touches.
@@ -184,26 +180,28 @@ class _Statics:
 
     def deflection(self, forces: FloatArray, deviation: FloatArray) -> FloatArray:
         """Displacements (n,) of the structure."""
-        return np.asarray(self.u_0 - self.columns @ np.concatenate([forces, deviation]))
+        load = np.asarray(self._B.T @ np.concatenate([forces, deviation]))
+        return self.u_0 - self._factor.solve(load) if np.any(load) else self.u_0.copy()
 
     def at(self, u_x: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Contact forces, approaches and elongations."""
+        """Contact forces, approaches and elongations, from deviations (n_spring,) of active springs."""
         forces = self.weight + self.k @ u_x
-        d = self.free - self.Z @ np.concatenate([forces, q])
+        d = self.free - self._B @ self._columns.deflection(np.concatenate([forces, q]))
         w = self.n_wheel
         return forces, d[:w] - u_x, d[w:]
 
-    def residual(self, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Residual [N] and Jacobian."""
-        w, laws = self.n_wheel, self.laws
+    def residual(self, y: FloatArray) -> tuple[FloatArray, FloatArray, IntArray]:
+        """Residual [N] and Jacobian, and springs that are not unknown but should be."""
+        w, laws, a = self.n_wheel, self.laws, self.active
         u_x, q = y[:w], y[w:]
-        forces, approach, elongation = self.at(u_x, q)
+        forces, approach, elongation = self.at(u_x, self._all(q))
+        Z = self._columns.compliance(np.concatenate([np.arange(w), w + a]))
         still = np.zeros(w)
         slope, _ = laws.tangent(approach, still)
         from_u = np.concatenate([self.k, np.zeros((len(q), w))])  # of [X, q]
         from_q = np.concatenate([np.zeros((w, len(q))), np.eye(len(q))])
         dp = np.hstack([from_u, from_q])
-        dd = -self.Z @ dp
+        dd = -Z @ dp
         dd[:w, :w] -= np.eye(w)
         residual = np.empty(len(y))
         jacobian = np.empty((len(y), len(y)))
@@ -215,24 +213,44 @@ class _Statics:
         loose = laws.unilateral & ~held
         residual[:w][loose] = forces[loose]
         jacobian[:w][loose] = dp[:w][loose]
-        if len(q):
-            given, tangent = self.springs.static_deviation(elongation)
-            residual[w:] = q - given
-            jacobian[w:] = dp[w:] - slope_times(tangent, dd[w:])
-        return residual, jacobian
+        if not self.springs.n:
+            return residual, jacobian, a
+        given, tangent = self.springs.static_deviation(elongation)
+        varies = tangent != 0.0 if tangent.ndim == 1 else np.any(tangent != 0.0, axis=1)
+        if len(a):
+            residual[w:] = q - given[a]
+            jacobian[w:] = dp[w:] - slope_times(
+                tangent[a] if tangent.ndim == 1 else tangent[np.ix_(a, a)], dd[w:]
+            )
+        return residual, jacobian, np.setdiff1d(np.flatnonzero((given != 0.0) | varies), a)
+
+    def _all(self, q: FloatArray) -> FloatArray:
+        """Deviations (n_spring,) from those of active springs."""
+        result = np.zeros(self.springs.n)
+        result[self.active] = q
+        return result
+
+    def _take_in(self, springs: IntArray) -> None:
+        self._columns.take_in(self.n_wheel + springs)
+        self.active = np.append(self.active, springs)
 
     def solve(self) -> tuple[FloatArray, FloatArray]:
         """u_X (n_coupled,) and q (n_spring,)."""
         w = self.n_wheel
-        y = np.concatenate([self.free[:w] - self.Z[:w, :w] @ self.weight, np.zeros(self.springs.n)])
-        residual, jacobian = self.residual(y)
+        on_line = self._columns.compliance(np.arange(w)) @ self.weight
+        y = self.free[:w] - on_line
+        residual, jacobian, more = self.residual(y)
         for _ in range(_LIMIT):
+            if len(more):
+                self._take_in(more)
+                y = np.append(y, np.zeros(len(more)))
+                residual, jacobian, more = self.residual(y)
             step = _step(jacobian, residual)
             size = float(residual @ residual)
             share = 1.0
             for _ in range(_HALVINGS):
                 tried = y - share * step
-                new, slope = self.residual(tried)
+                new, slope, more = self.residual(tried)
                 if float(new @ new) <= size:
                     break
                 share *= 0.5
@@ -240,13 +258,13 @@ class _Statics:
             y, residual, jacobian = tried, new, slope
             small = float(np.abs(residual).max(initial=0.0)) <= _TOLERANCE * self.scale
             still = change <= 1e-15 and float(np.abs(residual).max(initial=0.0)) <= 1e-6 * self.scale
-            if small or still:  # rounding is all that is left under very stiff laws
-                return y[:w], y[w:]
+            if not len(more) and (small or still):  # rounding is all that is left under very stiff laws
+                return y[:w], self._all(y[w:])
         worst = int(np.argmax(np.abs(residual)))
         where = (
             f"contact {self.plan.crossing.contact_names[int(self.plan.fleet.coupled[worst])]}"
             if worst < self.n_wheel
-            else f"spring {self.springs.names[worst - self.n_wheel]}"
+            else f"spring {self.springs.names[int(self.active[worst - self.n_wheel])]}"
         )
         raise AnalysisError(
             f"the static equilibrium at time zero was not found in {_LIMIT} iterations (residual "

@@ -89,6 +89,11 @@ class EnvelopeMonitor:
         self._values = {name: np.array([np.full(n, -np.inf), np.full(n, np.inf)]) for name in wanted}
         self._times = {name: np.zeros((2, n)) for name in wanted}
 
+    @property
+    def forces(self) -> list[SectionForces]:
+        """What section forces are read from."""
+        return [] if self._forces is None else [self._forces]
+
     def look(self, steps: IntArray, near: FloatArray, positions: FloatArray, forces: FloatArray) -> None:
         """Look at consecutive steps: ``near`` (3, n_step, n_free) of ``free_dofs``, wheels (n_step, n_contact)."""
         at_once = max(1, _VALUES // (4 * len(self._position)))

@@ -56,8 +56,9 @@ class LineHistories:
             self.positions, self.ends, self.free_dofs = like.positions, like.ends, like.free_dofs
             self._rows, self._moved = like._rows, like._moved
         n_kept = plan.settings.steps // plan.settings.every + 1
-        self._motion = np.zeros((n_kept, self._rows[0].shape[0]))
-        self._acceleration = np.zeros((n_kept, len(self.positions)))
+        # Times run fastest: extremes over them, and filters, read memory in order.
+        self._motion = np.zeros((self._rows[0].shape[0], n_kept))
+        self._acceleration = np.zeros((len(self.positions), n_kept))
 
     def _read_rows(self, plan: Plan) -> None:
         self.positions = np.array(plan.settings.line_points, dtype=float)
@@ -77,17 +78,20 @@ class LineHistories:
         """Look at consecutive steps: ``near`` (3, n_step, n_free) of ``free_dofs``."""
         if not len(self.positions):
             return
-        kept = np.flatnonzero(steps % self._plan.settings.every == 0)
-        into = steps[kept] // self._plan.settings.every
-        self._motion[into] = self._values(0, "value", steps[kept], near[0, kept])
-        self._acceleration[into] = self._values(1, "acceleration", steps[kept], near[2, kept])
+        every = self._plan.settings.every
+        kept = slice(int(-steps[0] % every), None, every)
+        first = int(-(-steps[0] // every))
+        into = slice(first, first + len(steps[kept]))
+        self._motion[:, into] = self._values(0, "value", steps[kept], near[0, kept])
+        self._acceleration[:, into] = self._values(1, "acceleration", steps[kept], near[2, kept])
 
     def _values(self, which: int, name: str, steps: IntArray, near: FloatArray) -> FloatArray:
-        values = np.asarray((self._rows[which] @ near.T).T)
+        """Values (n_row, n_step) of rows at consecutive or every n-th step."""
+        values = np.asarray(self._rows[which] @ near.T)
         if len(self._plan.moving):
             times, motions = self._plan.times_of(steps), self._plan.crossing.structure.system.motions
             own = np.array([getattr(motions[j], name)(times) for j in self._plan.moving])
-            values = values + (self._moved[which] @ own).T
+            values = values + self._moved[which] @ own
         return values
 
     def histories(self, n: int) -> dict[str, FloatArray]:
@@ -98,8 +102,8 @@ class LineHistories:
         return {
             "line_position": self.positions,
             "line_end": self.ends,
-            "line_displacement": self._motion[:n, :count],
-            "line_acceleration": self._acceleration[:n],
-            "line_slope": self._motion[:n, count : count + 2],
-            "line_twist": self._motion[:n, count + 2 :],
+            "line_displacement": self._motion[:count, :n].T,
+            "line_acceleration": self._acceleration[:, :n].T,
+            "line_slope": self._motion[count : count + 2, :n].T,
+            "line_twist": self._motion[count + 2 :, :n].T,
         }

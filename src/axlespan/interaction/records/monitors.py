@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +10,9 @@ import numpy.typing as npt
 
 from axlespan.dynamics.integrator import Matrices, State
 from axlespan.interaction.plan import Plan
-from axlespan.interaction.records.reactions import on_segments
+from axlespan.interaction.records.inertia import filtered
+from axlespan.interaction.records.substeps import Substep
+from axlespan.interaction.records.sums import Sums
 from axlespan.running.path import PolynomialPath
 
 FloatArray = npt.NDArray[np.float64]
@@ -65,7 +67,14 @@ class BalanceMonitor:
         rows = [(mass, "a")]
         rows += [(vector, name) for vector, name in ((damping, "v"), (stiffness, "u")) if np.any(vector)]
         self._rows = [(vector[system.prescribed], name) for vector, name in rows]
-        self.sums = [(np.ascontiguousarray(vector[system.free]), "uva".index(name)) for vector, name in rows]
+        moved = [vector[system.free] for vector, _ in rows]
+        self.mass: FloatArray = moved[0]  # (n,) M t of the structure that moves up by one [kg]
+        self.sums = Sums.together(
+            [
+                Sums.of_blocks(*(vector[None] if name == which else 0.0 * vector[None] for which in "uva"))
+                for vector, (_, name) in zip(moved, rows, strict=True)
+            ]
+        )
         self._loads = [(float(t @ load.vector), load.factor) for load in system.loads]
         # Each wheel's line when the whole structure moves up by one.
         free = [(path.wheels, path.free) for path in plan.rows.paths]
@@ -75,11 +84,12 @@ class BalanceMonitor:
             for wheels, path in paths
             if len(path.path_dofs)
         ]
-        self._inertia, self._worst, self._scale = 0.0, 0.0, 0.0
+        self._inertia, self._worst, self._scale = np.zeros(1), 0.0, 0.0
         # Steps whose accelerations were set anew, with the inertia that these leave out: those where a wheel landed,
         # and, with the new ones (n,), those after which a wheel let go.
         self.restarted: Mapping[int, float] = {}
         self.released: Mapping[int, tuple[FloatArray, float]] = {}
+        self.between: Mapping[int, Sequence[Substep]] = {}  # steps that were cut
 
     def look(
         self,
@@ -102,32 +112,53 @@ class BalanceMonitor:
             )
             value = sums[:, i] + moved
             if name == "a" and alpha != 0.0:
-                for k, step in enumerate(steps):
-                    if int(step) - 1 in self.released:
-                        anew, excess = self.released[int(step) - 1]
-                        before = moved[k - 1] if k else moved[k]  # a support hardly changes its acceleration
-                        self._inertia = float(self.sums[i][0] @ anew) + before + excess
-                    if step == 0 or int(step) in self.restarted:
-                        self._inertia = value[k] + self.restarted.get(int(step), 0.0)
-                    else:
-                        self._inertia = (value[k] + alpha * self._inertia) / (1.0 + alpha)
-                    totals[k] += self._inertia
-            else:
-                totals += value
+                self._filter(steps, value, moved, prescribed)
+            totals += value
         applied = sum((amount * factor(times) for amount, factor in self._loads), np.zeros(len(steps)))
-        wheels = (self._share(positions) * forces).sum(axis=1)
+        wheels = self._carried(positions, forces)
         residual = reactions @ self._t_prescribed + applied - wheels - totals
         self._worst = max(self._worst, float(np.abs(residual).max()))
         self._scale = max(self._scale, *(float(np.abs(part).max()) for part in (wheels, applied, totals)))
 
-    def _share(self, positions: FloatArray) -> FloatArray:
-        """Share (n_step, n_contact) of each wheel's force that the structure carries: 1, or less at its ends."""
-        result = np.zeros(positions.shape)
+    def _after(self, part: Substep, prescribed: FloatArray, alpha: float) -> float:
+        """Inertia of the whole structure after a step in between."""
+        motions, time = self._plan.crossing.structure.system.motions, np.array([part.time])
+        moved = sum(float(prescribed[j] * motions[j].acceleration(time)[0]) for j in self._plan.moving)
+        if part.excess is not None:
+            return part.total + moved + part.excess
+        return (part.total + moved + alpha * float(self._inertia[0])) / (1.0 + alpha)
+
+    def _filter(
+        self, steps: IntArray, momentum: FloatArray, moved: FloatArray, prescribed: FloatArray
+    ) -> None:
+        """Turn tᵀ M ü (n_step,), of which supports that move have a share, into inertia forces, in place."""
+        alpha = self._plan.settings.method.alpha
+        special = [
+            k
+            for k, step in enumerate(steps.tolist())
+            if step == 0 or step in self.restarted or step - 1 in self.released or step in self.between
+        ]
+
+        def anew(k: int) -> bool:
+            step = int(steps[k])
+            if step - 1 in self.released:
+                accelerations, excess = self.released[step - 1]
+                before = moved[k - 1] if k else moved[k]  # a support hardly changes its acceleration
+                self._inertia[0] = float(self.mass @ accelerations) + before + excess
+            for part in self.between.get(step, ()):
+                self._inertia[0] = self._after(part, prescribed, alpha)
+            if step in self.restarted:
+                momentum[k] += self.restarted[step]
+            return step == 0 or step in self.restarted
+
+        filtered(momentum[:, None], alpha, self._inertia, np.array(special, dtype=np.int64), anew)
+
+    def _carried(self, positions: FloatArray, forces: FloatArray) -> FloatArray:
+        """What the structure carries (n_step,) of the wheels' forces: all of it, or less at its ends."""
+        total = np.zeros(len(positions))
         for wheels, path in self._lifted:
-            row, column = on_segments(path, positions[:, wheels])
-            wheel = wheels[column]
-            result[row, wheel] += path.weights(positions[row, wheel])[1][:, 0]
-        return result
+            total += path.loads(positions, forces, wheels, 1)[:, 0]
+        return total
 
     @property
     def residual(self) -> float:
@@ -218,8 +249,9 @@ class EnergyMonitor:
     work of forces out of balance; it should vanish to rounding.
     """
 
-    def __init__(self, plan: Plan) -> None:
+    def __init__(self, plan: Plan, samples: Collection[int] | None = None) -> None:
         self._plan = plan
+        self.cut: Collection[int] = ()  # steps that were cut: others look at their parts
         self.restarted: Collection[int] = ()  # steps at which a wheel landed: they lose energy
         self.released: Collection[int] = ()  # steps after which a wheel let go
         # Forces (n,) of nonlinear springs on the vehicles at the last completed step.
@@ -228,7 +260,8 @@ class EnergyMonitor:
         steps = plan.settings.steps
         count = max(_FEWEST_SAMPLES, min(_ENERGY_SAMPLES, _SAMPLED_DOFS // plan.structure.size))
         count = plan.settings.energy_samples or count
-        self._samples = set(np.unique(np.linspace(1, steps, min(count, steps)).astype(int)).tolist())
+        spread = np.unique(np.linspace(1, steps, min(count, steps)).astype(int)).tolist()
+        self._samples = set(spread if samples is None else samples)
         # A balanced step needs the one before it.
         self.steps = frozenset(self._samples | {step - 1 for step in self._samples})
         self._before: tuple[State, State, FloatArray, FloatArray] | None = None
@@ -240,7 +273,7 @@ class EnergyMonitor:
     ) -> None:
         """Look at a completed step: states, Eᵀ X (n,) and contact forces (n_coupled,)."""
         follows = self._before_step == step - 1
-        follows &= step not in self.restarted and step - 1 not in self.released
+        follows &= step not in self.restarted and step - 1 not in self.released and step not in self.cut
         if step in self._samples and self._before is not None and follows:
             self._balance(step, structure, vehicles, load, forces)
         self._before = None
@@ -276,6 +309,10 @@ class EnergyMonitor:
             energy, imbalance = energy + own[0], imbalance + own[1]
         if np.isfinite(energy) and np.isfinite(imbalance):
             self._worst, self._scale = max(self._worst, abs(imbalance)), max(self._scale, energy)
+
+    def include(self, other: EnergyMonitor) -> None:
+        """Count in what another one saw."""
+        self._worst, self._scale = max(self._worst, other._worst), max(self._scale, other._scale)
 
     @property
     def residual(self) -> float:

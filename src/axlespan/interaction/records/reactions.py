@@ -9,27 +9,26 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from axlespan.interaction.plan import Plan
+from axlespan.interaction.records.inertia import filtered
+from axlespan.interaction.records.substeps import Substep
+from axlespan.interaction.records.sums import Sums
 from axlespan.running.path import PolynomialPath
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-# Up to this many entries a dense product is quicker than a sparse one.
-_DENSE_UP_TO = 10_000
-
 
 class Reactions:
-    """R_P after each step, from the free d.o.f. next to the supports.
+    """R_P after each step, from sums over the free d.o.f. next to the supports.
 
     N12 (13) with the inertia forces gathered: (1+α) I^c = M_PF ü_F^c + M_PP ü_P^c + α I^p, and
     R_P^c = I^c + [C_PF u̇_F + C_PP u̇_P + K_PF u_F + K_PP u_P - P_P + D_PX X]^c.
     ``like`` are those of another crossing with the same structure and footprint, whose tables serve here too.
     """
 
-    free_dofs: IntArray
-    _K: FloatArray | sp.csr_array
-    _M: FloatArray | sp.csr_array
-    _C: FloatArray | sp.csr_array
+    sums: Sums  # of displacements and velocities (n_P), then of accelerations (n_P)
+    free_dofs: IntArray  # that the inertia forces need
+    _M: sp.csr_array  # (n_free, n_P)
     _loads: Sequence[tuple[FloatArray, Callable[[FloatArray], FloatArray]]]
 
     def __init__(self, plan: Plan, like: Reactions | None = None) -> None:
@@ -38,25 +37,25 @@ class Reactions:
         if like is None:
             self._read_tables()
         else:
-            self.free_dofs, self._K, self._M, self._C = like.free_dofs, like._K, like._M, like._C
-            self._loads = like._loads
+            self.sums, self.free_dofs, self._M, self._loads = like.sums, like.free_dofs, like._M, like._loads
         self.paths = self._prescribed_paths()
         self._inertia = np.zeros(len(plan.crossing.structure.system.prescribed))
         self.restarted: Collection[int] = ()  # steps whose accelerations are those of their own time
         self.released: Mapping[
             int, tuple[FloatArray, float]
         ] = {}  # accelerations (n,) set anew after such a step
+        self.between: Mapping[int, Sequence[Substep]] = {}  # steps that were cut
         # What nonlinear springs add in so many steps (n_step, n_P), in turn.
         self.inner: Callable[[int], FloatArray | None] | None = None
 
     def _read_tables(self) -> None:
         system = self.plan.crossing.structure.system
         blocks = system.partition
-        together = abs(blocks.K_FP) + abs(blocks.M_FP) + abs(blocks.C_FP)
-        self.free_dofs = np.unique(together.tocoo().row.astype(np.int64))
-        self._K, self._M, self._C = (
-            _operand(sp.csr_array(m)[self.free_dofs]) for m in (blocks.K_FP, blocks.M_FP, blocks.C_FP)
-        )
+        none = sp.csr_array(blocks.K_FP.T.shape)
+        from_rest = Sums.of_blocks(blocks.K_FP.T, blocks.C_FP.T, none)
+        self.sums = Sums.together([from_rest, Sums.of_blocks(none, none, blocks.M_FP.T)])
+        self.free_dofs = np.unique(sp.coo_array(blocks.M_FP).row.astype(np.int64))
+        self._M = sp.csr_array(sp.csr_array(blocks.M_FP)[self.free_dofs])
         loads = [(load.vector[system.prescribed], load.factor) for load in system.loads]
         self._loads = [(vector, factor) for vector, factor in loads if np.any(vector)]
 
@@ -78,33 +77,30 @@ class Reactions:
         number[system.prescribed] = np.arange(len(system.prescribed))
         return self.plan.settings.under_wheels(structure.line(line)).renumbered(number)
 
-    def of(self, steps: IntArray, near: FloatArray, positions: FloatArray, forces: FloatArray) -> FloatArray:
+    def of(self, steps: IntArray, sums: FloatArray, positions: FloatArray, forces: FloatArray) -> FloatArray:
         """Reactions (n_step, n_P) at consecutive time indices.
 
         Parameters
         ----------
         steps : array (n_step,)
             Time indices; must follow those of the call before.
-        near : array (3, n_step, n_free)
-            Displacement, velocity and acceleration of ``free_dofs``.
+        sums : array (n_step, 2 n_P)
+            Those of :attr:`sums`.
         positions, forces : array (n_step, n_contact)
             Of the wheels.
         """
         system, plan = self.plan.crossing.structure.system, self.plan
         blocks = system.partition
         times = plan.times_of(steps)
-        u, v, a = near
-        own = [u @ self._K, v @ self._C, a @ self._M]
+        reaction, inertia = sums[:, : len(self._inertia)].copy(), sums[:, len(self._inertia) :].copy()
         if len(plan.moving):
             pairs = (("value", blocks.K_PP), ("velocity", blocks.C_PP), ("acceleration", blocks.M_PP))
-            for part, (name, matrix) in zip(own, pairs, strict=True):
+            for part, (name, matrix) in zip((reaction, reaction, inertia), pairs, strict=True):
                 table = np.zeros((len(steps), len(system.prescribed)))
                 for j in plan.moving:
                     table[:, j] = getattr(system.motions[j], name)(times)
                 part += table @ matrix.T
-        reaction = self._filtered(steps, own[2])
-        reaction += own[0]
-        reaction += own[1]
+        reaction += self._filtered(steps, inertia)
         for vector, factor in self._loads:
             reaction -= factor(times)[:, None] * vector
         reaction += self._carried(positions, forces)
@@ -116,50 +112,38 @@ class Reactions:
     def _filtered(self, steps: IntArray, momentum: FloatArray) -> FloatArray:
         alpha = self.plan.settings.method.alpha
         if alpha == 0.0:
-            return momentum.copy()
-        result = np.empty_like(momentum)
-        for i, step in enumerate(steps):
-            fresh = step == 0 or int(step) in self.restarted
-            if int(step) - 1 in self.released:
-                self._inertia = self._momentum(int(step) - 1)
-            self._inertia = momentum[i] if fresh else (momentum[i] + alpha * self._inertia) / (1.0 + alpha)
-            result[i] = self._inertia
-        return result
+            return momentum
+        special = [
+            i
+            for i, step in enumerate(steps.tolist())
+            if step == 0 or step in self.restarted or step - 1 in self.released or step in self.between
+        ]
 
-    def _momentum(self, step: int) -> FloatArray:
-        """Inertia forces (n_P,) of accelerations that were set anew."""
-        system = self.plan.crossing.structure.system
-        time = self.plan.times_of(np.array([step]))
+        def anew(i: int) -> bool:
+            step = int(steps[i])
+            if step - 1 in self.released:
+                before = float(self.plan.times_of(np.array([step - 1]))[0])
+                self._inertia[:] = self._momentum(before, self.released[step - 1][0][self.free_dofs])
+            for part in self.between.get(step, ()):
+                own = self._momentum(part.time, part.at(self.free_dofs))
+                fresh = part.excess is not None
+                self._inertia[:] = own if fresh else (own + alpha * self._inertia) / (1.0 + alpha)
+            return step == 0 or step in self.restarted
+
+        filtered(momentum, alpha, self._inertia, np.array(special, dtype=np.int64), anew)
+        return momentum
+
+    def _momentum(self, time: float, near: FloatArray) -> FloatArray:
+        """Inertia forces (n_P,) at a time, of accelerations (n_free,) that no tape holds."""
+        system, times = self.plan.crossing.structure.system, np.array([time])
         moved = np.zeros(len(system.prescribed))
         for j in self.plan.moving:
-            moved[j] = system.motions[j].acceleration(time)[0]
-        return np.asarray(self.released[step][0][self.free_dofs] @ self._M + system.partition.M_PP @ moved)
+            moved[j] = system.motions[j].acceleration(times)[0]
+        return np.asarray(near @ self._M + system.partition.M_PP @ moved)
 
     def _carried(self, positions: FloatArray, forces: FloatArray) -> FloatArray:
         """D_PX X: wheel loads that go straight into the supports."""
-        n_support = self._inertia.size
-        total = np.zeros((len(positions), n_support))
+        total = np.zeros((len(positions), self._inertia.size))
         for wheels, path in self.paths:
-            row, column = on_segments(path, positions[:, wheels])
-            if not len(row):
-                continue
-            wheel = wheels[column]
-            dofs, weights = path.weights(positions[row, wheel])
-            place = row[:, None] * n_support + dofs
-            loads = weights * forces[row, wheel][:, None]
-            total += np.bincount(place.ravel(), loads.ravel(), total.size).reshape(total.shape)
+            total += path.loads(positions, forces, wheels, self._inertia.size)
         return total
-
-
-def on_segments(path: PolynomialPath, positions: FloatArray) -> tuple[IntArray, IntArray]:
-    """Rows and columns of the positions (n_step, n_wheel) at which a path has any weights."""
-    row, column = np.nonzero(path.carries(positions))
-    weighty = np.any(path.coefficients != 0.0, axis=(1, 2))
-    if len(row) and not weighty.all():
-        keep = weighty[path.locate(positions[row, column])[0]]
-        return row[keep], column[keep]
-    return row, column
-
-
-def _operand(matrix: sp.csr_array) -> FloatArray | sp.csr_array:
-    return matrix.toarray() if matrix.shape[0] * matrix.shape[1] <= _DENSE_UP_TO else matrix

@@ -27,6 +27,8 @@ from axlespan.interaction.records.monitors import (
 from axlespan.interaction.records.reactions import Reactions
 from axlespan.interaction.records.section_forces import SectionHistories
 from axlespan.interaction.records.stress_histories import StressHistories
+from axlespan.interaction.records.substeps import Substep
+from axlespan.interaction.records.sums import Sums
 from axlespan.interaction.records.tape import LaneTape
 from axlespan.interaction.records.watchers import Keeper, Watcher, Watchers
 from axlespan.interaction.result import Result
@@ -94,6 +96,14 @@ class Recorder:
         self.reactions.restarted = self.balance.restarted = self.energy.restarted = self.restarted
         self.released: dict[int, tuple[FloatArray, float]] = {}
         self.reactions.released = self.balance.released = self.energy.released = self.released
+        # Steps that were cut, with what lies inside.
+        self.between: dict[int, tuple[Substep, ...]] = {}
+        self.reactions.between = self.balance.between = self.energy.cut = self.between
+        sections = [*self.sections.forces, *self.envelopes.forces]
+        for forces in sections:
+            forces.restarted, forces.released, forces.between = self.restarted, self.released, self.between
+        inertial = [self.reactions.free_dofs, *(forces.free_dofs for forces in sections)]
+        self.inertial_dofs: IntArray = np.unique(np.concatenate(inertial)).astype(np.int64)
         self.more_checks: Callable[[], Mapping[str, Any]] | None = None
         self.more_facts: Callable[[], Mapping[str, Any]] | None = None
         n_sensor = len(self._sensor_dofs)
@@ -104,9 +114,11 @@ class Recorder:
             {name: np.zeros((n_kept, n_sensor)) for name in _QUANTITIES},
             np.zeros((n_kept, len(plan.crossing.structure.system.prescribed))),
         )
-        own = np.concatenate([self._sensor_dofs.ravel(), self.reactions.free_dofs])
+        parts = [self.balance.sums, self.reactions.sums]
+        self.sums: Sums = Sums.together(parts) if known is None else known.sums
+        own = self._sensor_dofs.ravel()
         more = [keeper.free_dofs for keeper in self._keepers]
-        self.selected = np.unique(np.concatenate([own, *more]))
+        self.selected = np.unique(np.concatenate([own, *more])).astype(np.int64)
         self._inverse, *self._more = (np.searchsorted(self.selected, dofs) for dofs in (own, *more))
         self._gathering = Gathering()
         # Nonlinear couplings set things anew from step to step, which must be read in time.
@@ -132,8 +144,8 @@ class Recorder:
     def begin(self, structure: State, vehicles: State, forces: FloatArray, load: FloatArray) -> None:
         """Keep time zero: states, contact forces (n_contact,) and Eᵀ X (n,)."""
         near = structure.values[:, None, self.selected]
-        sums = np.array([[vector @ structure.values[which] for vector, which in self.balance.sums]])
-        tape = LaneTape(near, vehicles.values[:, None], forces[None], sums)
+        sums = self.sums.of(structure.values)
+        tape = LaneTape(near, vehicles.values[:, None], forces[None], sums[None])
         zero = np.zeros(1, dtype=np.int64)
         self._take(zero, self.plan.rows.positions(np.zeros(1)), tape)
         if self.watchers.looks_at(0):
@@ -204,17 +216,19 @@ class Recorder:
     def _take(self, steps: IntArray, positions: FloatArray, tape: LaneTape) -> None:
         """Move what is asked for into the histories."""
         values = tape.near[:, :, self._inverse]
-        n_sensor = self._sensor_dofs.size
-        at_sensors = values[:, :, :n_sensor].reshape(3, len(steps), *self._sensor_dofs.shape)
+        at_sensors = values.reshape(3, len(steps), *self._sensor_dofs.shape)
         sensors = (at_sensors * self._sensor_weights).sum(axis=3) + self._moved_sensors(steps)
-        reactions = self.reactions.of(steps, values[:, :, n_sensor:], positions, tape.forces)
-        self.balance.look(steps, tape.sums, reactions, positions, tape.forces)
+        first = self.balance.sums.count
+        reactions = self.reactions.of(steps, tape.sums[:, first:], positions, tape.forces)
+        self.balance.look(steps, tape.sums[:, :first], reactions, positions, tape.forces)
         self.tension.look(steps, positions, tape.forces)
         self.noise.look(tape.forces)
-        for step in [step for step in self.released if step < steps[-1]]:
-            del self.released[step]
         for keeper, at in zip(self._keepers, self._more, strict=True):
             keeper.look(steps, tape.near[:, :, at], positions, tape.forces)
+        for step in [step for step in self.released if step < steps[-1]]:
+            del self.released[step]
+        for step in [step for step in self.between if step <= steps[-1]]:
+            del self.between[step]
         kept = np.flatnonzero(steps % self.every == 0)
         into = steps[kept] // self.every
         h = self.histories

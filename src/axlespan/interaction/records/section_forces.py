@@ -6,7 +6,7 @@ As for the support reactions (N12 (13)), the inertia forces that go with the for
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +14,7 @@ import scipy.sparse as sp
 
 from axlespan.elements.beam_sections import QUANTITIES
 from axlespan.interaction.plan import Plan
+from axlespan.interaction.records.substeps import Substep
 from axlespan.interaction.sensors import by_line
 from axlespan.running.path import PolynomialPath
 from axlespan.running.sections import BeamSections
@@ -53,6 +54,10 @@ class SectionForces:
         self._influences = self._wheels(sections, number)
         self._shape = (sections.n_section, len(chosen))
         self._inertia = np.zeros(len(keep))
+        # As for the reactions: steps set anew, accelerations (n,) set anew after a step, steps that were cut.
+        self.restarted: Collection[int] = ()
+        self.released: Mapping[int, tuple[FloatArray, float]] = {}
+        self.between: Mapping[int, Sequence[Substep]] = {}
 
     def _wheels(self, sections: BeamSections, number: IntArray) -> list[tuple[IntArray, PolynomialPath]]:
         """Wheels (n_wheel,) of each line, and their share in the section forces by their position."""
@@ -101,21 +106,32 @@ class SectionForces:
         alpha = self._plan.settings.method.alpha
         if alpha == 0.0:
             return inertia
-        for i, step in enumerate(steps):
-            own = inertia[:, i]
-            self._inertia = own.copy() if step == 0 else (own + alpha * self._inertia) / (1.0 + alpha)
+        for i, step in enumerate(steps.tolist()):
+            if step - 1 in self.released:
+                before = float(self._plan.times_of(np.array([step - 1]))[0])
+                self._inertia = self._at(before, self.released[step - 1][0][self.free_dofs])
+            for part in self.between.get(step, ()):
+                own = self._at(part.time, part.at(self.free_dofs))
+                anew = part.excess is not None
+                self._inertia = own if anew else (own + alpha * self._inertia) / (1.0 + alpha)
+            own, fresh = inertia[:, i], step == 0 or step in self.restarted
+            self._inertia = own.copy() if fresh else (own + alpha * self._inertia) / (1.0 + alpha)
             inertia[:, i] = self._inertia
         return inertia
 
+    def _at(self, time: float, accelerations: FloatArray) -> FloatArray:
+        """Inertia forces (n_row,) at a time, of accelerations (n_free,) that no tape holds."""
+        part = np.asarray(self._rows[2] @ accelerations)
+        if self._moved[2].nnz:
+            times, motions = np.array([time]), self._plan.crossing.structure.system.motions
+            part += self._moved[2] @ np.array([motions[j].acceleration(times)[0] for j in self._plan.moving])
+        return part
+
     def _add_wheels(self, total: FloatArray, positions: FloatArray, forces: FloatArray) -> None:
         """Add G X (n_row, n_step) of the wheels in the elements of the sections."""
-        n_step = len(positions)
         for wheels, path in self._influences:
-            at = positions[:, wheels] - _OVER * (path.stop - path.start)
-            step, wheel = np.nonzero(path.carries(at))
-            rows, weights = path.weights(at[step, wheel])
-            shares = weights * forces[step, wheels[wheel], None]
-            np.add.at(total.reshape(-1), (rows * n_step + step[:, None]).ravel(), shares.ravel())
+            before = -_OVER * (path.stop - path.start)
+            total += path.loads(positions, forces, wheels, len(total), before).T
 
 
 class SectionHistories:
@@ -130,6 +146,7 @@ class SectionHistories:
         ).items():
             segments, xi = structure.line(line).locate(places)
             self._groups.append((numbers, SectionForces(plan, segments, xi, line=line)))
+        self.forces = [forces for _, forces in self._groups]
         none: IntArray = np.empty(0, dtype=np.int64)
         self.free_dofs = np.unique(np.concatenate([none, *(group.free_dofs for _, group in self._groups)]))
         n_kept = plan.settings.steps // self._every + 1

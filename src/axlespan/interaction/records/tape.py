@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
 
 from axlespan.interaction.bodies import FleetBody, StructureBody
+from axlespan.interaction.records.sums import Sums
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -35,10 +35,18 @@ class Watched:
     """What of the structure is written down: d.o.f., and sums over all d.o.f."""
 
     dofs: IntArray  # (n_selected,) of all crossings together, sorted
-    reading: FloatArray | None  # (n_selected, m) from m coordinates of the state; None: d.o.f. are among them
-    sums: Sequence[
-        tuple[FloatArray, int]
-    ]  # vectors (n,) and 0, 1, 2 for displacement, velocity, acceleration
+    sums: Sums
+    shapes: FloatArray | None = (
+        None  # (n, m) all d.o.f. from m coordinates of the state; None: it holds the d.o.f.
+    )
+    reading: FloatArray | None = field(init=False)  # (n_selected, m)
+    sums_reading: FloatArray | None = field(init=False)  # (n_sum, 3, m)
+
+    def __post_init__(self) -> None:
+        given = self.shapes
+        object.__setattr__(self, "reading", None if given is None else given[self.dofs])
+        through = None if given is None else self.sums.read_through(given)
+        object.__setattr__(self, "sums_reading", through)
 
 
 class Tape:
@@ -63,7 +71,7 @@ class Tape:
         self._near = np.zeros((n_step, 3, len(self._flat)))
         self._vehicles = np.zeros((n_step, 3, n_vehicle_dof))
         self._forces = np.zeros((n_step, n_contact))
-        self._sums = np.zeros((n_step, len(self.watched.sums), self._lanes))
+        self._sums = np.zeros((n_step, self.watched.sums.count, self._lanes))
 
     def take(self, structure: StructureBody, fleet: FleetBody | None, forces: FloatArray) -> None:
         """Write down the step just completed."""
@@ -74,8 +82,8 @@ class Tape:
         if fleet is not None:
             self._vehicles[k] = fleet.state.values
         self._forces[k] = forces
-        for i, (vector, which) in enumerate(self.watched.sums):
-            self._sums[k, i] = vector @ values[which]
+        if self.watched.sums_reading is None:
+            self._sums[k] = self.watched.sums.of(values).reshape(-1, self._lanes)
         self.filled = k + 1
 
     @property
@@ -93,6 +101,9 @@ class Tape:
         at, reading = np.searchsorted(self.watched.dofs, dofs), self.watched.reading
         width = len(self._flat) // self._lanes
         near = self._near[:n, :, lane * width : (lane + 1) * width]
+        sums, weights = self._sums[:n, :, lane], self.watched.sums_reading
+        if weights is not None:
+            sums = near.reshape(n, 3 * width) @ weights.reshape(len(weights), 3 * width).T
         if reading is not None:
             near = near @ reading[at].T
         elif len(at) < width:
@@ -101,5 +112,5 @@ class Tape:
             near.transpose(1, 0, 2),
             self._vehicles[:n, :, vehicle_dofs].transpose(1, 0, 2),
             self._forces[:n, contacts],
-            self._sums[:n, :, lane],
+            sums,
         )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Collection, Iterable
 from typing import Protocol
 
@@ -53,6 +54,12 @@ class Watchers:
         for watcher in watchers:
             for step in watcher.steps:
                 self._by_step.setdefault(step, []).append(watcher)
+        self._steps = sorted(self._by_step)
+
+    def between(self, first: int, n_step: int) -> list[int]:
+        """Which of so many steps from the first one on are looked at, counted from it."""
+        low, high = bisect_left(self._steps, first), bisect_left(self._steps, first + n_step)
+        return [step - first for step in self._steps[low:high]]
 
     def looks_at(self, step: int) -> bool:
         """Whether any of them looks at a step."""

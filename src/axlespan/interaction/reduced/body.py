@@ -122,9 +122,10 @@ class PreparedReduced(PreparedStructure):
         """Vᵀ F of forces (n,) or (n, k)."""
         return np.asarray(self.basis.vectors.T @ vectors)
 
-    def reading(self, dofs: IntArray) -> FloatArray:
-        """Rows of V (n_dof, m): displacements of d.o.f. from coordinates."""
-        return self.basis.vectors[dofs]
+    @property
+    def shapes(self) -> FloatArray:
+        """All d.o.f. (n, m) from m coordinates."""
+        return self.basis.vectors
 
 
 class ReducedStructureBody(StructureBody):

@@ -6,17 +6,21 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
+from functools import partial
 from multiprocessing.connection import wait as wait_for
-from typing import Final, Protocol
+from typing import Any, Final, Protocol
 
+from axlespan.study.sweep.under_way import News, Tell
 from axlespan.study.sweep.workshop import Done, Task, run_task
 
 # Tasks on their way for each worker: one that is computed, one that waits.
 AHEAD: Final = 2
+# Seconds between two looks at how far tasks are.
+_PAUSE: Final = 0.5
 # So many times a task is tried again whose worker died.
 TRIES: Final = 3
 
@@ -40,8 +44,8 @@ class Executor(Protocol):
         """Tasks that are computed at a time."""
         ...
 
-    def run(self, tasks: Iterable[Task]) -> Iterator[Done | Lost]:
-        """What came of each task; closing the iterator stops the rest."""
+    def run(self, tasks: Iterable[Task], news: News | None = None) -> Iterator[Done | Lost]:
+        """What came of each task; closing the iterator stops the rest. ``news`` hears how far tasks are."""
         ...
 
 
@@ -50,9 +54,9 @@ class InProcess:
 
     workers = 1
 
-    def run(self, tasks: Iterable[Task]) -> Iterator[Done | Lost]:
+    def run(self, tasks: Iterable[Task], news: News | None = None) -> Iterator[Done | Lost]:
         """What came of each task."""
-        return (run_task(task) for task in tasks)
+        return (run_task(task, None if news is None else partial(news, task.number)) for task in tasks)
 
 
 class Processes:
@@ -61,11 +65,11 @@ class Processes:
     def __init__(self, workers: int) -> None:
         self.workers = workers
 
-    def run(self, tasks: Iterable[Task]) -> Iterator[Done | Lost]:
+    def run(self, tasks: Iterable[Task], news: News | None = None) -> Iterator[Done | Lost]:
         """What came of each task; closing the iterator ends the processes."""
         known = {name: os.environ.get(name) for name in _THREADS}
         os.environ.update(dict.fromkeys(_THREADS, "1"))  # children read them when they start
-        crew = _Crew(self.workers, iter(tasks))
+        crew = _Crew(self.workers, iter(tasks), news)
         try:
             yield from crew.work()
         finally:
@@ -77,18 +81,33 @@ class Processes:
                     os.environ[name] = value
 
 
+@dataclass(frozen=True, eq=False)
+class _Sent:
+    """A task on its way."""
+
+    task: Task
+    tries: int
+    place: int  # where its worker writes how far it is
+
+
 class _Crew:
     """A pool of processes, and the tasks that it has taken."""
 
-    def __init__(self, workers: int, tasks: Iterator[Task]) -> None:
-        self._workers, self._tasks = workers, tasks
+    def __init__(self, workers: int, tasks: Iterator[Task], news: News | None = None) -> None:
+        self._workers, self._tasks, self._news = workers, tasks, news
+        # threads and locks of libraries do not survive a fork
+        self._context = multiprocessing.get_context("spawn")
+        # How far the tasks on their way are, each in a place of its own: no lock that a process could die with.
+        self._places: Any = None if news is None else self._context.RawArray("d", AHEAD * workers)
+        self._free = list(range(AHEAD * workers))
         self._pool = self._new_pool()
-        self._running: dict[Future[Done], tuple[Task, int]] = {}
+        self._running: dict[Future[Done], _Sent] = {}
         self._suspects: list[tuple[Task, int]] = []  # were on their way when a process died
 
     def _new_pool(self) -> ProcessPoolExecutor:
-        context = multiprocessing.get_context("spawn")  # threads and locks of libraries do not survive a fork
-        return ProcessPoolExecutor(self._workers, mp_context=context, initializer=_begin_worker)
+        return ProcessPoolExecutor(
+            self._workers, mp_context=self._context, initializer=_begin_worker, initargs=(self._places,)
+        )
 
     def work(self) -> Iterator[Done | Lost]:
         """Compute all tasks."""
@@ -96,15 +115,17 @@ class _Crew:
             self._fill()
             if not self._running:
                 return
-            finished, _ = wait(self._running, return_when=FIRST_COMPLETED)
+            pause = None if self._news is None else _PAUSE
+            finished, _ = wait(self._running, timeout=pause, return_when=FIRST_COMPLETED)
             broken = False
             for future in finished:
-                task, tries = self._running.pop(future)
+                sent = self._taken_back(future)
                 try:
                     yield future.result()
                 except BrokenProcessPool:
                     broken = True
-                    self._suspects.append((task, tries + 1))
+                    self._suspects.append((sent.task, sent.tries + 1))
+            self._tell()
             if broken:
                 yield from self._replace()
 
@@ -121,16 +142,32 @@ class _Crew:
             self._submit(task, 0)
 
     def _submit(self, task: Task, tries: int) -> None:
+        place = self._free.pop()
+        if self._places is not None:
+            self._places[place] = 0.0
         try:
-            self._running[self._pool.submit(run_task, task)] = (task, tries)
+            future = self._pool.submit(_run_in_place, run_task, task, place)
         except BrokenProcessPool:
             self._pool = self._new_pool()
-            self._running[self._pool.submit(run_task, task)] = (task, tries)
+            future = self._pool.submit(_run_in_place, run_task, task, place)
+        self._running[future] = _Sent(task, tries, place)
+
+    def _taken_back(self, future: Future[Done]) -> _Sent:
+        """A task that is over, or whose process died."""
+        sent = self._running.pop(future)
+        self._free.append(sent.place)
+        return sent
+
+    def _tell(self) -> None:
+        """Tell how far the tasks on their way are."""
+        if self._news is not None:
+            for sent in self._running.values():
+                self._news(sent.task.number, float(self._places[sent.place]))
 
     def _replace(self) -> Iterator[Lost]:
         """A new pool; what was on its way is tried again, and given up after some tries."""
-        self._suspects += [(task, tries + 1) for task, tries in self._running.values()]
-        self._running.clear()
+        for sent in [self._taken_back(future) for future in list(self._running)]:
+            self._suspects.append((sent.task, sent.tries + 1))
         self.close()
         self._pool = self._new_pool()
         lost = [task for task, tries in self._suspects if tries > TRIES]
@@ -148,8 +185,19 @@ class _Crew:
             process.join()
 
 
-def _begin_worker() -> None:
+# Of this worker: how far all tasks on their way are, shared with the parent.
+_PLACES: list[Any] = []
+
+
+def _run_in_place(run: Callable[[Task, Tell | None], Done], task: Task, place: int) -> Done:
+    """Compute a task in a worker, which writes into its place how far it is."""
+    places = _PLACES[0] if _PLACES else None
+    return run(task, None if places is None else partial(places.__setitem__, place))
+
+
+def _begin_worker(places: Any) -> None:
     """Leave interrupts to the parent, and end with it."""
+    _PLACES[:] = [places]
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     parent = multiprocessing.parent_process()

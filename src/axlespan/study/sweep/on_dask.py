@@ -6,6 +6,7 @@ import asyncio
 import importlib
 import logging
 import platform
+import secrets
 import time
 import warnings
 from collections.abc import Iterable, Iterator
@@ -19,12 +20,15 @@ import scipy
 import axlespan
 from axlespan.errors import InputError
 from axlespan.study.sweep.executors import AHEAD, Lost
+from axlespan.study.sweep.under_way import News
 from axlespan.study.sweep.workshop import Done, Task, run_task
 
 PATIENCE: Final = 10.0
 """How long a scheduler is waited for [s], and then workers of it."""
 
 _LOOK: Final = 5.0  # s between two counts of the workers
+_PAUSE: Final = 0.1  # s between two looks at what is ready
+_NEWS: Final = 1.0  # s between two messages of a worker, which all go through the scheduler
 
 LOCAL: Final = "local"
 _EXAMPLE: Final = "tcp://host:8786"
@@ -36,11 +40,13 @@ class OnDask:
     def __init__(self, client: Any, workers: int) -> None:
         self._client, self.workers = client, workers
         self._looked = time.monotonic()
+        self._heard: dict[int, float] = {}  # how far tasks are
 
-    def run(self, tasks: Iterable[Task]) -> Iterator[Done | Lost]:
+    def run(self, tasks: Iterable[Task], news: News | None = None) -> Iterator[Done | Lost]:
         """What came of each task; closing the iterator cancels the rest."""
         supply = iter(tasks)
         running: dict[Any, Task] = {}
+        topic = None if news is None else self._listen()
         finished = _engine().as_completed(loop=self._client.loop)
 
         def give(number: int) -> None:
@@ -48,13 +54,16 @@ class OnDask:
                 task = next(supply, None)
                 if task is None:
                     return
-                future = self._client.submit(run_task, task, pure=False)
+                future = self._client.submit(_run_on_worker, task, topic, pure=False)
                 running[future.key] = task
                 finished.add(future)
 
         try:
             give(AHEAD * self.workers)
             while running:
+                while news is not None and not finished.has_ready() and not finished.is_empty():
+                    time.sleep(_PAUSE)
+                    self._tell(news, running.values())
                 future = next(finished)
                 task = running.pop(future.key)
                 yield self._outcome(future, task)
@@ -63,6 +72,27 @@ class OnDask:
         finally:
             with suppress(Exception):
                 self._client.cancel([future for future in finished.futures])
+            with suppress(Exception):
+                self._client.unsubscribe_topic(topic)
+
+    def _listen(self) -> str:
+        """Hear of workers how far their tasks are; the topic of their messages."""
+        topic = f"axlespan-{secrets.token_hex(8)}"
+
+        def hear(event: Any) -> None:  # in the client's own thread
+            with suppress(Exception):
+                number, share = event[1]
+                self._heard[int(number)] = float(share)
+
+        self._client.subscribe_topic(topic, hear)
+        return topic
+
+    def _tell(self, news: News, running: Iterable[Task]) -> None:
+        """Tell how far the tasks on their way are."""
+        for task in list(running):
+            share = self._heard.get(task.number)
+            if share is not None:
+                news(task.number, share)
 
     def _look_around(self) -> None:
         """Count the workers now and then: clusters grow and shrink."""
@@ -83,6 +113,23 @@ class OnDask:
         if error is None or self._client.status != "running":
             raise ConnectionError("the scheduler is gone")
         return Lost(task.number, task.ids, " ".join(str(error).split())[:300] or type(error).__name__)
+
+
+def _run_on_worker(task: Task, topic: str | None) -> Done:
+    """Compute a task on a worker, which tells the client now and then how far it is."""
+    if topic is None:
+        return run_task(task)
+    worker, last = _engine().get_worker(), time.monotonic()
+
+    def tell(share: float) -> None:
+        nonlocal last
+        now = time.monotonic()
+        if now - last >= _NEWS:
+            last = now
+            with suppress(Exception):  # without news the task goes on
+                worker.log_event(topic, [task.number, share])
+
+    return run_task(task, tell)
 
 
 @contextmanager

@@ -58,29 +58,33 @@ TIMING: Final = ("seconds",)
 def peaks_of(result: Result, plan: Plan) -> dict[str, Any]:
     """Extremes of a completed result by the names of their columns."""
     row: dict[str, Any] = {"passed": has_passed(plan)}
-    for i, name in enumerate(result.sensor):
-        u, v, a = (
-            table[:, i]
-            for table in (result.sensor_displacement, result.sensor_velocity, result.sensor_acceleration)
-        )
-        values = (u.min(), u.max(), np.abs(v).max(), np.abs(a).max())
-        row |= {f"sensor.{name}.{c}": float(v) for c, v in zip(OF_SENSORS, values, strict=True)}
+    if result.sensor:
+        u = result.sensor_displacement
+        v, a = _largest(result.sensor_velocity), _largest(result.sensor_acceleration)
+        table = np.array([u.min(axis=0), u.max(axis=0), v, a])
+        for name, values in zip(result.sensor, table.T.tolist(), strict=True):
+            row |= {f"sensor.{name}.{column}": v for column, v in zip(OF_SENSORS, values, strict=True)}
     return {**row, **_line(result), **_contacts(result), **_bodies(result)}
 
 
 def _line(result: Result) -> dict[str, float]:
     if not len(result.line_position):
         return {}
-    w, a = result.line_displacement, np.abs(result.line_acceleration)
-    deepest, hardest = np.abs(w).max(axis=0), a.max(axis=0)
-    at, where = int(deepest.argmax()), int(hardest.argmax())
+    w = result.line_displacement
+    low, high, hardest = w.min(axis=0), w.max(axis=0), _largest(result.line_acceleration)
+    at, where = int(np.maximum(-low, high).argmax()), int(hardest.argmax())
     return {
-        "line_displacement_min_m": float(w.min()),
-        "line_displacement_max_m": float(w.max()),
+        "line_displacement_min_m": float(low.min()),
+        "line_displacement_max_m": float(high.max()),
         "line_displacement_at_m": float(result.line_position[at]),
         "line_acceleration_max_m_per_s2": float(hardest[where]),
         "line_acceleration_at_m": float(result.line_position[where]),
     }
+
+
+def _largest(values: FloatArray) -> FloatArray:
+    """Largest amounts (n, ...) over time, without a copy of the table."""
+    return np.maximum(-values.min(axis=0), values.max(axis=0))
 
 
 def _contacts(result: Result) -> dict[str, Any]:
@@ -107,7 +111,7 @@ def _bodies(result: Result) -> dict[str, float]:
     dofs = [i for i, name in enumerate(result.vehicle_dof) if _is_body(name)]
     if not dofs or not len(result.time):
         return {}
-    return {"body_acceleration_max_m_per_s2": float(np.abs(result.vehicle_acceleration[:, dofs]).max())}
+    return {"body_acceleration_max_m_per_s2": float(_largest(result.vehicle_acceleration[:, dofs]).max())}
 
 
 def _is_body(name: str) -> bool:

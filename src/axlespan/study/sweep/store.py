@@ -19,7 +19,6 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
-from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -29,9 +28,11 @@ import numpy.typing as npt
 import axlespan
 from axlespan.errors import InputError, Place
 from axlespan.io.strict_json import to_json
-from axlespan.study.sweep.files import PARTIAL, locked, settle, write_whole
+from axlespan.study.sweep.files import locked, settle, write_whole
+from axlespan.study.sweep.mending import SHARDS, TABLE, mend
 from axlespan.study.sweep.recipe import digest
 from axlespan.study.sweep.shards import Histories, shard_bytes
+from axlespan.study.sweep.tables import as_parquet, column_of, parts_of, table_of
 from axlespan.study.sweep.workshop import Done
 
 if TYPE_CHECKING:
@@ -40,8 +41,7 @@ if TYPE_CHECKING:
 IntArray = npt.NDArray[np.int64]
 
 FORMAT_VERSION: Final = 1
-HEADER, TABLE = "store.json", "table"
-SHARDS: Final = ("histories", "records")
+HEADER: Final = "store.json"
 
 # A part of the table is written when so many rows, bytes of histories or seconds have come together.
 _ROWS, _BYTES, _SECONDS = 5000, 64e6, 5.0
@@ -79,6 +79,7 @@ class Store:
 
     folder: Path
     header: Header
+    mended: tuple[str, ...] = ()  # what was damaged when it was opened, and is done again
     _waiting: list[Done] = field(default_factory=list)
     _since: float = field(default_factory=time.monotonic)
 
@@ -122,59 +123,21 @@ class Store:
                 else:
                     _begin(folder, header, texts)
                 store = cls(folder, header)
-                store._mend()
+                store.mended = tuple(mend(folder, header.columns, header.scenarios))
                 yield store
         finally:
             if made and not (folder / HEADER).exists():
                 shutil.rmtree(folder, ignore_errors=True)
 
-    def _mend(self) -> None:
-        """Remove what an interrupted run left: files that were not complete, histories that no row names."""
-        table, new, old = (self.folder / name for name in (TABLE, f"{TABLE}.new", f"{TABLE}.old"))
-        if not table.exists() and new.exists():
-            new.rename(table)  # it was complete when the old one was moved away
-        for stale in (new, old):
-            shutil.rmtree(stale, ignore_errors=True)
-        table.mkdir(exist_ok=True)
-        for name in (".", TABLE, *SHARDS):
-            for partial in (self.folder / name).glob(f"{PARTIAL}*"):
-                partial.unlink(missing_ok=True)
-        self._set_aside_damaged()
-        for kind in SHARDS:
-            named = set(self._column(kind)) if (self.folder / kind).exists() else set()
-            for shard in (self.folder / kind).glob("*.nc"):
-                if shard.name not in named:
-                    shard.unlink()
-
-    def _set_aside_damaged(self) -> None:
-        """Parts that cannot be read, as after a power cut, are done again."""
-        import pyarrow as pa
-        import pyarrow.parquet as pq
-
-        for part in self._parts():
-            try:
-                pq.read_metadata(part)
-            except (pa.ArrowException, OSError):
-                part.rename(part.with_name(f".damaged-{part.stem}"))
-
     # --- reading -------------------------------------------------------------------------------
 
     def done(self) -> IntArray:
         """Ids of the scenarios that have a row (n,), ascending."""
-        return np.sort(np.array(self._column("id"), dtype=np.int64))
+        return np.sort(np.array(column_of(self._table, "id"), dtype=np.int64))
 
-    def _parts(self) -> list[Path]:
-        """Parts of the table; names that begin with a point are of files that are not complete."""
-        found = (self.folder / TABLE).glob("*.parquet")
-        return sorted(part for part in found if not part.name.startswith("."))
-
-    def _column(self, name: str) -> list[Any]:
-        import pyarrow.parquet as pq
-
-        values: list[Any] = []
-        for part in self._parts():
-            values += pq.read_table(part, columns=[name], partitioning=None).column(name).to_pylist()
-        return values
+    @property
+    def _table(self) -> Path:
+        return self.folder / TABLE
 
     def arrays(self, names: Sequence[str]) -> dict[str, npt.NDArray[Any]]:
         """Columns of the table by name (n_row,), ordered by id; numbers that are not there are NaN."""
@@ -182,7 +145,7 @@ class Store:
         import pyarrow.parquet as pq
 
         wanted = [name for name in names if name in self.header.columns]
-        parts = self._parts()
+        parts = parts_of(self._table)
         if not parts:
             return {name: np.empty(0) for name in wanted}
         read = [
@@ -206,7 +169,7 @@ class Store:
             raise InputError(
                 "is not installed", field="pandas", fix="pip install 'axlespan[study]'"
             ) from None
-        parts = self._parts()
+        parts = parts_of(self._table)
         if not parts:
             return pd.DataFrame(columns=list(self.header.columns)).set_index("id")
         frame = pd.read_parquet(self.folder / TABLE)
@@ -250,7 +213,7 @@ class Store:
             rows.sort(key=lambda row: int(row["id"]))
             token = digest([row["id"] for row in rows])[:12]
             path = self.folder / TABLE / f"part-{rows[0]['id']:09d}-{token}.parquet"
-            write_whole(path, _parquet(rows, self.header.columns))
+            write_whole(path, as_parquet(table_of(rows, self.header.columns)))
         self._since = time.monotonic()
 
     def _write_shard(self, kind: str, histories: Histories | None) -> str | None:
@@ -274,14 +237,12 @@ class Store:
         import pyarrow.parquet as pq
 
         table, new, old = (self.folder / name for name in (TABLE, f"{TABLE}.new", f"{TABLE}.old"))
-        parts = self._parts()
+        parts = parts_of(self._table)
         if len(parts) < 2:
             return
         whole = pa.concat_tables([pq.read_table(part, partitioning=None) for part in parts]).sort_by("id")
         new.mkdir()
-        content = BytesIO()
-        pq.write_table(whole, content, compression="zstd")
-        write_whole(new / "scenarios.parquet", content.getvalue())
+        write_whole(new / "scenarios.parquet", as_parquet(whole))
         table.rename(old)
         new.rename(table)
         settle(self.folder)
@@ -295,35 +256,6 @@ class Store:
         OSError
         """
         write_whole(self.folder / "summary.json", (to_json(content, indent=2) + "\n").encode())
-
-
-def _parquet(rows: Sequence[Mapping[str, Any]], columns: Mapping[str, str]) -> bytes:
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
-    types = {"int": pa.int64(), "number": pa.float64(), "text": pa.string(), "flag": pa.bool_()}
-    schema = pa.schema([(name, types[kind]) for name, kind in columns.items()])
-    arrays = [
-        pa.array([_fitting(row.get(name), kind) for row in rows], type=types[kind])
-        for name, kind in columns.items()
-    ]
-    content = BytesIO()
-    pq.write_table(pa.Table.from_arrays(arrays, schema=schema), content, compression="zstd")
-    return content.getvalue()
-
-
-def _fitting(value: Any, kind: str) -> Any:
-    """A value as its column takes it."""
-    if value is None:
-        return None
-    if kind == "number":
-        try:
-            return float(value)
-        except (TypeError, ValueError):
-            return None
-    if kind == "int":
-        return int(value)
-    return bool(value) if kind == "flag" else str(value)
 
 
 def _begin(folder: Path, header: Header, texts: Mapping[str, str]) -> None:

@@ -46,6 +46,9 @@ MOST_SCENARIOS = 10_000_000
 #: Called with the numbers of scenarios that are done, that failed, and of all.
 Progress = Callable[[int, int, int], None]
 
+#: Called with how many scenarios' worth of time steps have been made in batches that are not done.
+UnderWay = Callable[[float], None]
+
 
 @dataclass(frozen=True, eq=False)
 class Scenario:
@@ -135,6 +138,7 @@ class RunOutcome:
     failed: int  # rows of the store that are no results
     missing: int  # scenarios without row
     reasons: tuple[str, ...] = ()  # why some are missing
+    mended: tuple[str, ...] = ()  # what was damaged in the store and has been done again
 
 
 class Study(Shown):
@@ -321,6 +325,7 @@ class Study(Shown):
         scheduler: str | None = None,
         resume: bool = False,
         progress: Progress | None = None,
+        under_way: UnderWay | None = None,
         trial: Trial | None = None,
         free: float = 4e9,
     ) -> RunOutcome:
@@ -336,7 +341,10 @@ class Study(Shown):
         scheduler : str, optional
             Address of a Dask scheduler, or ``local`` for a local Dask cluster of so many workers.
         progress : callable, optional
-            Called with numbers of scenarios: done, failed, all.
+            Called at first, and after each batch, with numbers of scenarios: done, failed, all.
+        under_way : callable, optional
+            Called while batches are computed, with how many scenarios' worth of their time steps have been made: a
+            number of scenarios beside those that are done.
         trial : Trial, optional
             From :meth:`trial`, if it has been made already.
         free : float
@@ -366,18 +374,36 @@ class Study(Shown):
             most = lanes_in_memory(known, executor.workers, free)
             with Store.for_writing(Path(folder), header, self._texts(), resume=resume) as store:
                 self._store = store
-                return self._fill(store, executor, most, progress)
+                return self._fill(store, executor, most, progress, under_way)
 
-    def _fill(self, store: Store, executor: Executor, most: int, progress: Progress | None) -> RunOutcome:
+    def _fill(
+        self,
+        store: Store,
+        executor: Executor,
+        most: int,
+        progress: Progress | None,
+        under_way: UnderWay | None,
+    ) -> RunOutcome:
         every = np.arange(len(self._scenarios), dtype=np.int64)
         there = store.done()
         missing = np.setdiff1d(every, there, assume_unique=True)
         lanes = lanes_for(len(missing), executor.workers, most)
         work = tasks(self._recipe, self._scenarios, missing, lanes)
         done, failed, reasons = 0, 0, list[str]()
-        running: Iterator[Done | Lost] = iter(executor.run(work))
+        shares: dict[int, float] = {}
+        if progress is not None:
+            progress(len(there), 0, len(every))
+
+        def news(number: int, share: float) -> None:
+            if under_way is not None and shares.get(number, 0.0) != share:
+                shares[number] = share
+                under_way(sum(shares.values()))
+
+        running: Iterator[Done | Lost] = iter(executor.run(work, None if under_way is None else news))
         try:
             for one in running:
+                if shares.pop(one.number, None) is not None and under_way is not None:
+                    under_way(sum(shares.values()))
                 if isinstance(one, Lost):
                     reasons.append(one.reason)
                     continue
@@ -401,7 +427,12 @@ class Study(Shown):
             store.write_summary(answers.summary())
         unsuccessful = answers.failed
         return RunOutcome(
-            len(every), done, unsuccessful, len(every) - len(there) - done, tuple(dict.fromkeys(reasons))
+            len(every),
+            done,
+            unsuccessful,
+            len(every) - len(there) - done,
+            tuple(dict.fromkeys(reasons)),
+            store.mended,
         )
 
     def _texts(self) -> dict[str, str]:
