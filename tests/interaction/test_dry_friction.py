@@ -70,7 +70,7 @@ def stick_and_slip(r, dr, ddr, dt, method):
     al, be, ga = method.alpha, method.beta, method.gamma
     w = np.array([r[0], dr, ddr])
     z = np.array([r[0], 0.0, 0.0])
-    inner, friction = -(STIFF * (z[0] - w[0]) + DASH * (z[1] - w[1])), -SLIDE * np.sign(z[1] - w[1])
+    inner, friction = -(STIFF * (z[0] - w[0]) + DASH * (z[1] - w[1])), 0.0  # at rest on a crest
     z[2] = (inner + friction) / MASS
     found, sticks = [z.copy()], 0
     for new in r[1:]:
@@ -94,25 +94,23 @@ def stick_and_slip(r, dr, ddr, dt, method):
 @pytest.mark.parametrize("alpha", [0.0, -0.1])
 def test_a_suspension_sticks_and_slides(alpha):
     """On rigid ground before the bridge; friction 1e-9 m/s wide, in whole steps."""
-    law = MultilinearDashpot(
-        [(-1.0, -SLIDE - 1.0), (-1e-9, -SLIDE), (1e-9, SLIDE), (1.0, SLIDE + 1.0)]
-    )
+    law = MultilinearDashpot([(-1.0, -SLIDE), (-1e-9, -SLIDE), (1e-9, SLIDE), (1.0, SLIDE)])
     car = asp.vehicles.sprung_mass(mass=MASS, stiffness=STIFF, damping=DASH, unsprung_mass=WHEEL)
     car = with_nonlinear_spring(car, law, {"body.z": 1.0, "wheel1.z": -1.0}, name="friction")
-    waves, dt, speed, start = asp.irregularity.Harmonic(amplitude=1e-2, wavelength=9.0), 1e-3, 30.0, -12.0
+    waves, dt, speed, start = asp.irregularity.Harmonic(amplitude=1e-2, wavelength=9.0), 1e-3, 30.0, -15.75
     bridge = asp.bridges.simple_span(
         length=25.0, youngs_modulus=2.87e9, second_moment=2.9, mass_per_length=2303.0, elements=6
     )
     crossing = asp.Crossing(bridge, asp.Train.of(car), speed=speed, start=start, irregularity=waves)
     method = asp.Alpha(alpha)
-    result = asp.simulate(crossing, time_step=dt, steps=420, method=method)
+    result = asp.simulate(crossing, time_step=dt, steps=600, method=method)
     assert result.facts["cut_steps"] == 0 and result.facts["newton_iterations_largest"] <= 30
-    before = slice(0, 380)
-    r = waves.value(start + speed * dt * np.arange(380))
+    before = slice(0, 500)
+    r = waves.value(start + speed * dt * np.arange(500))
     exact, sticks = stick_and_slip(
         r, speed * float(waves.slope(start)), speed**2 * float(waves.curvature(start)), dt, method
     )
-    assert 40 < sticks < 340
+    assert 40 < sticks < 450
     for i, name in enumerate(("vehicle_displacement", "vehicle_velocity")):
         own = result.at(name, "1.body.z")[before]
         assert np.abs(own - exact[:, i]).max() < 1e-6 * np.abs(exact[:, i]).max(), name

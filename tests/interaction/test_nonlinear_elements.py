@@ -170,7 +170,7 @@ def test_no_convergence_is_an_outcome_with_step_dof_and_remedy():
     car = asp.vehicles.sprung_mass(mass=5750.0, stiffness=1.595e6, unsprung_mass=800.0)
     wild = with_nonlinear_element(car, Wild(), ["body.z", "wheel1.z"], name="damper")
     crossing = asp.Crossing(bridge(), asp.Train.of(wild), speed=40.0)
-    with pytest.raises(AnalysisError, match=r"step 1, .* did not converge .* spring 1\.damper\.[12]"):
+    with pytest.raises(AnalysisError, match=r"^step \d+, .* did not converge .* spring 1\.damper\.[12]"):
         asp.simulate(crossing, time_step=DT, steps=30)
 
 

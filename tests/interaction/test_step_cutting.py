@@ -103,9 +103,7 @@ SECTIONS = {"sensors": {"a": 0.0, "m": 12.5}, "section_forces": ["a", "m"]}
 BUMPY = asp.Crossing(
     bridge(moved=True), asp.Train.of(CAR, 2, 4.0), speed=40.0, start=-1.0, irregularity=waves(3e-3)
 )
-PLAY = with_spring_law(
-    track_on_ground(ballasted_track(), 36.0), "pads", BilinearHysteresis(1.2e8, 2e3, 2e7)
-)
+PLAY = with_spring_law(track_on_ground(ballasted_track(), 36.0), "pads", BilinearHysteresis(1.2e8, 2e3, 2e7))
 CASES = {
     "hertz": (BUMPY, {"contact": Hertz(radius=0.46), **SECTIONS}),
     "tyre with a dashpot": (BUMPY, {"contact": LinearSpring(2e7, 1e4), **SECTIONS}),
@@ -173,9 +171,7 @@ def test_checks_hold_where_some_steps_are_cut_and_wheels_fly(stubborn, contact):
     crossing = asp.Crossing(
         bridge(moved=True), asp.Train.of(CAR, 2, 4.0), speed=60.0, irregularity=waves(8e-3, 3.0)
     )
-    stubborn(
-        5e-4, lambda n, step, part: n < 2 ** levels[step] and part == int(part_of_failure[step] * n)
-    )
+    stubborn(5e-4, lambda n, step, part: n < 2 ** levels[step] and part == int(part_of_failure[step] * n))
     result = run(
         crossing,
         time_step=5e-4,
@@ -187,7 +183,9 @@ def test_checks_hold_where_some_steps_are_cut_and_wheels_fly(stubborn, contact):
         envelopes=["shear"],
     )
     assert result.facts["cut_steps"] == np.count_nonzero(levels[1:])
-    np.testing.assert_array_equal(result.facts["parts_of_steps"], 2 ** levels[1 : levels.nonzero()[0][-1] + 1])
+    np.testing.assert_array_equal(
+        result.facts["parts_of_steps"], 2 ** levels[1 : levels.nonzero()[0][-1] + 1]
+    )
     assert result.checks["flight_count"] >= 10
     starts = np.array([flight["start"] for flight in result.checks["flights"]])
     assert np.any(np.abs(starts / 5e-4 - np.round(starts / 5e-4)) > 0.1)  # inside steps, too
@@ -360,5 +358,5 @@ def test_a_compiled_loop_goes_on_after_a_cut(stubborn):
 
 @pytest.mark.parametrize("cuts", [-1, 11, 1.5, True])
 def test_wrong_numbers_of_cuts(cuts):
-    with pytest.raises(InputError, match="cuts = .*: must be a whole number from 0 to 10"):
+    with pytest.raises(InputError, match=r"cuts = .*: must be a whole number from 0 to 10"):
         asp.simulate(careful(), time_step=DT, steps=10, cuts=cuts)

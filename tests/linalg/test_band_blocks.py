@@ -58,7 +58,9 @@ def test_a_wide_band_solves_many_as_it_solves_one(shuffled):
     kept = b.copy()
     np.testing.assert_allclose(factor.solve(b), expected, rtol=0.0, atol=1e-12)
     assert np.array_equal(b, kept)
-    np.testing.assert_allclose(factor.solve(np.ascontiguousarray(b[:, 3])), expected[:, 3], rtol=0.0, atol=1e-12)
+    np.testing.assert_allclose(
+        factor.solve(np.ascontiguousarray(b[:, 3])), expected[:, 3], rtol=0.0, atol=1e-12
+    )
     out = np.empty_like(b)
     assert factor.solve(b, out=out) is out
     np.testing.assert_allclose(out, expected, rtol=0.0, atol=1e-12)

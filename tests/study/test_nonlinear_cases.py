@@ -41,11 +41,12 @@ train:
   - {CAR}, offset: 6 m}}
   - {CAR}, offset: 12 m, contact: {{kind: linear-spring, stiffness: 2 MN/m, damping: 3 kNs/m, tension: true}}}}
 crossing: {{speed: 60 m/s, {WAVES}}}
-analysis: {{time_step: 0.5 ms, steps: 300, contact: unilateral, lost_after: 0.25 s}}
+analysis: {{time_step: 0.5 ms, steps: 300, contact: unilateral, lost_after: 0.25 s, cuts: 2}}
 """
     )
     assert built.plan.laws.kinds == ("hertz", "unilateral", "linear-spring")
     assert built.plan.settings.lost_after == 0.25
+    assert built.plan.settings.cuts == 2
     result = run_plan(built.plan)
     car = asp.vehicles.sprung_mass(mass=5750.0, stiffness=1.595e6, damping=20e3, unsprung_mass=800.0)
     from dataclasses import replace

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from axlespan.contact.motion import Course
-from axlespan.irregularity.profile import Profile
+from axlespan.irregularity.profile import Profile, Smooth
 from axlespan.running.path import PolynomialPath
 
 FloatArray = npt.NDArray[np.float64]
@@ -63,7 +63,18 @@ class TrainRows:
 
     def positions(self, time: FloatArray) -> FloatArray:
         """Positions (n_time, n_contact) of the wheels along their lines [m]."""
+        if len(self.trains) == 1:
+            return self.trains[0].positions(time)
         return np.concatenate([train.positions(time) for train in self.trains], axis=1)
+
+    def n_entries(self, begin: float, end: float) -> int:
+        """Entries of the rows of a step between two times: contacts that stand on the structure, and what they load."""
+        ends, total = self.positions(np.array([begin, end])), 0
+        low, high = ends.min(axis=0), ends.max(axis=0)
+        for path in self.paths:
+            there = (high[path.wheels] >= path.free.start) & (low[path.wheels] <= path.free.stop)
+            total += int(np.count_nonzero(there)) * path.free.dofs.shape[1]
+        return total
 
     def motion(self, time: float) -> tuple[FloatArray, FloatArray]:
         """Velocities (n_contact,) [m/s] and accelerations [m/s^2] of the wheels along their lines."""
@@ -75,6 +86,8 @@ class TrainRows:
 
     def on_structure(self, positions: FloatArray) -> npt.NDArray[np.bool_]:
         """Which wheels (n_time, n_contact) touch the structure, their footprints included."""
+        if len(self.paths) == 1:
+            return self.paths[0].free.carries(positions)
         result = np.zeros(positions.shape, dtype=bool)
         for path in self.paths:
             result[:, path.wheels] = path.free.carries(positions[:, path.wheels])
@@ -82,9 +95,13 @@ class TrainRows:
 
     def irregularity(self, positions: FloatArray, derivative: int = 0) -> FloatArray:
         """R (n_time, n_contact) [m] under the wheels, or its derivatives along the line."""
-        result = np.empty(positions.shape)
+        result = np.zeros(positions.shape)
         for path in self.paths:
+            if isinstance(path.profile, Smooth):
+                continue
             read = (path.profile.value, path.profile.slope, path.profile.curvature)[derivative]
+            if len(path.wheels) == self.n_contact:
+                return np.asarray(read(positions))
             result[:, path.wheels] = read(positions[:, path.wheels])
         return result
 
@@ -101,7 +118,8 @@ class TrainRows:
             np.zeros((*shape, n_prescribed)),
         )
         for path in self.paths:
-            here = np.flatnonzero(np.isin(wheels, path.wheels))
+            one = len(self.paths) == 1
+            here = np.arange(len(wheels)) if one else np.flatnonzero(np.isin(wheels, path.wheels))
             path.free.fill_rows(positions, here, here, block.dofs, block.weights, derivative)
             if path.prescribed is not None:
                 path.prescribed.fill_rows(

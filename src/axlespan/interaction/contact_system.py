@@ -79,6 +79,8 @@ def _nothing(plan: Plan, n_step: int) -> Rows:
 
 def _gap(plan: Plan, times: FloatArray, positions: FloatArray, block: RowBlock, rank: IntArray) -> FloatArray:
     """R + E_XP u_P (n_step, n_coupled) [m]."""
+    if not len(plan.fleet.coupled):
+        return np.zeros((len(times), 0))
     gap = plan.rows.irregularity(positions)[:, plan.fleet.coupled]
     if len(plan.moving):
         motions = plan.crossing.structure.system.motions

@@ -27,8 +27,8 @@ from axlespan.interaction.start import Start
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-# Steps of a stretch, and the entries of contact systems that one may hold.
-_STRETCH, _ENTRIES = 256, 12_000_000
+# Steps of a stretch, and the entries of contact systems and of contact rows that one may hold.
+_STRETCH, _ENTRIES, _ROWS = 1024, 12_000_000, 4_000_000
 
 # Lanes at their ends go along until they are so large a share.
 _IDLE = 0.25
@@ -102,6 +102,9 @@ class Convoy:
         left = [lane.left for lane in self.lanes]
         n_step = min(n_step, max(left) if idle else min(left))
         first = max(lane.done for lane in self.lanes) + 1
+        begin, end = self.plans[0].times_of(np.array([first, first + n_step]))
+        rows = sum(plan.rows.n_entries(begin, end) for plan in self.plans)
+        n_step = min(n_step, max(64, _ROWS // max(rows, 1)))
         return stretch_of(self.plans, first, n_step, self.structure, self.fleet, systems=systems)
 
     def external(self, stretch: Stretch) -> FloatArray | None:
@@ -111,11 +114,14 @@ class Convoy:
         times = self.plans[0].times_of(stretch.first - 1 + np.arange(stretch.n_step + 1))
         return self.forces.weighted(times, self.plans[0].settings.method)
 
-    def known_load(self, stretch: Stretch, k: int) -> FloatArray | None:
-        """Eᵀ P of the moving forces at a step; None where there are none on the structure."""
+    def known_load(self, stretch: Stretch, k: int, *, once: bool = False) -> FloatArray | None:
+        """Eᵀ P of the moving forces at a step, of all or just ``once``; None where there are none on the structure."""
         if not len(stretch.forced):
             return None
         weights = self.joint.weight[stretch.forced]
+        if once:
+            rows = stretch.rows(False, slice(k, k + 1))
+            return self.structure.path_load(rows.held[0], rows.weights[0], weights)
         return self.structure.path_load(stretch.forced_held[k], stretch.forced_weights[k], weights)
 
     def tape_of(self, lane: int) -> LaneTape:
@@ -280,8 +286,10 @@ def _make(
             for i in who:
                 watching[i].look(stretch.first + k, *convoy.moment(i))
     own = {i: min(convoy.tape.filled, lane.left) for i, lane in enumerate(convoy.lanes) if lane.left}
-    bad = {i: convoy.lanes[i].recorder.first_bad(convoy.tape_of(i).upto(n)) for i, n in own.items()}
-    found = {i: (k, None) for i, k in bad.items() if k is not None}
+    found: dict[int, tuple[int, str | None]] = {}
+    if not convoy.tape.is_good(min(lane.recorder.largest_force for lane in convoy.lanes)):
+        bad = {i: convoy.lanes[i].recorder.first_bad(convoy.tape_of(i).upto(n)) for i, n in own.items()}
+        found = {i: (k, None) for i, k in bad.items() if k is not None}
     if found:
         earliest = min(k for k, _ in found.values())
         return {i: entry for i, entry in found.items() if entry[0] == earliest}

@@ -69,7 +69,8 @@ class LineResponses:
     def _loads(self) -> sp.csc_array:
         """The loads (n, count) to solve for: Eᵀ of all crossings, or a unit load on each d.o.f."""
         place = sp.csc_array(
-            (np.ones(len(self._dofs)), self._dofs, np.arange(len(self._dofs) + 1)), shape=(self._n, len(self._dofs))
+            (np.ones(len(self._dofs)), self._dofs, np.arange(len(self._dofs) + 1)),
+            shape=(self._n, len(self._dofs)),
         )
         if not self._by_wheel:
             return place
@@ -81,7 +82,7 @@ class LineResponses:
         rows = self._rows[lane]
         seen = self._seen[:, self._own(lane)] if self._by_wheel else self._seen @ rows.T
         result = np.asarray(rows @ seen)
-        return 0.5 * (result + result.T)
+        return np.asarray(0.5 * (result + result.T))
 
     def _own(self, lane: int) -> slice:
         return slice(int(self._ends[lane]), int(self._ends[lane + 1]))

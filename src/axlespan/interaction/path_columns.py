@@ -60,7 +60,9 @@ class PathColumns:
         self.held = np.empty(0, dtype=np.int64)
         self.position = np.zeros(integrator.size, dtype=np.int64)  # d.o.f. -> place among the held ones
         self._columns = np.empty((0, integrator.size))  # in rows: that of the held d.o.f. i is at row[i]
-        self._row = self._used = np.empty(0, dtype=np.int64)  # (n_held,) row, and the stretch that last needed it
+        self._row = self._used = np.empty(
+            0, dtype=np.int64
+        )  # (n_held,) row, and the stretch that last needed it
         self._filled = self._stretch = 0  # rows that have ever been filled, stretches so far
         self._force = np.empty(0)
         # (1+α) β Δt² R A⁻¹ Rᵀ of the held d.o.f. [m/N]: row i begins at entry offset[i]; it is zero but from low[i] to

@@ -59,6 +59,9 @@ __all__ = [
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
+# Forces out of balance in a static equilibrium, relative to the largest one: rounding of its displacements.
+_ROUNDING = 1e-12
+
 
 @dataclass(frozen=True, eq=False)
 class Start:
@@ -111,9 +114,7 @@ def starts_of(plans: Sequence[Plan], factors: StartFactors | None = None) -> lis
         draft.follow_the_line()
     _accelerate(drafts, factors, kinds)
     n = plans[0].structure.size
-    return [
-        Start(d.structure, d.vehicles, d.forces, d.rows.load(d.forces[d.rows.on], n)) for d in drafts
-    ]
+    return [Start(d.structure, d.vehicles, d.forces, d.rows.load(d.forces[d.rows.on], n)) for d in drafts]
 
 
 @dataclass(eq=False)
@@ -196,7 +197,7 @@ def _stand(drafts: Sequence[_Draft], factors: StartFactors) -> None:
     if standing:
         lanes = [(d.rows.dofs[d.loading], d.rows.weights[0][d.loading]) for d in standing]
         responses = LineResponses(factors.stiffness, lanes)
-    amounts = []
+    amounts: list[FloatArray] = []
     for draft in drafts:
         level = draft.rows.height.copy()
         if u_0 is not None:
@@ -286,9 +287,10 @@ def _accelerate(drafts: Sequence[_Draft], factors: StartFactors, kinds: Vehicles
         if net is not None:
             struck.append(draft)
             nets.append(where_mass(plan.structure, net))
-    if struck:
-        for draft, a in zip(struck, side_by_side(factors.mass, nets), strict=True):
-            draft.structure.a[:] = a
+    pushed = [i for i, net in enumerate(nets) if np.any(net)]
+    if pushed:
+        for i, a in zip(pushed, side_by_side(factors.mass, [nets[i] for i in pushed]), strict=True):
+            struck[i].structure.a[:] = a
     lanes, rows = [], []
     for draft in struck:
         of_vehicles = draft.loading[draft.coupled_place[draft.rows.on[draft.loading]] >= 0]
@@ -319,11 +321,12 @@ def _out_of_balance(draft: _Draft, external: FloatArray) -> FloatArray | None:
         net -= m.K @ state.u
     if np.any(state.v):
         net -= m.damping_force(state.v)
-    net -= draft.rows.load(draft.forces[draft.rows.on], m.size)
+    wheels = draft.forces[draft.rows.on]
+    net -= draft.rows.load(wheels, m.size)
+    scale = max(float(np.abs(external).max(initial=0.0)), float(np.abs(wheels).max(initial=0.0)))
+    net[np.abs(net) <= _ROUNDING * scale] = 0.0
     of_vehicles = draft.coupled_place[draft.rows.on[draft.loading]] >= 0
-    limit = 1e-9 * max(float(np.abs(external).max(initial=0.0)), 1e-30)
-    still = not np.any(of_vehicles) and float(np.abs(net).max(initial=0.0)) <= limit
-    return None if still else net
+    return net if np.any(of_vehicles) or np.any(net) else None
 
 
 def _accelerate_vehicles(

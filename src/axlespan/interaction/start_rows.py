@@ -120,14 +120,20 @@ def _on_paths(
     touching = [(path, wheels) for path, wheels in touching if len(wheels)]
     width = max((path.free.dofs.shape[1] for path, _ in touching), default=1)
     count = sum(len(wheels) for _, wheels in touching)
-    on, dofs, weights = np.empty(count, dtype=np.int64), np.zeros((count, width), dtype=np.int64), np.zeros((3, count, width))
+    on, dofs, weights = (
+        np.empty(count, dtype=np.int64),
+        np.zeros((count, width), dtype=np.int64),
+        np.zeros((3, count, width)),
+    )
     end = 0
     for path, wheels in touching:
         here, local = slice(end, end + len(wheels)), slice(path.free.dofs.shape[1])
         end += len(wheels)
         on[here] = wheels
         for derivative in range(3):
-            dofs[here, local], weights[derivative, here, local] = path.free.weights(positions[wheels], derivative)
+            dofs[here, local], weights[derivative, here, local] = path.free.weights(
+                positions[wheels], derivative
+            )
     if len(touching) > 1:
         order = np.argsort(on)
         on, dofs, weights = on[order], dofs[order], weights[:, order]

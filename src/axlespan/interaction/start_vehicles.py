@@ -116,14 +116,18 @@ def groups_of(fleet: Fleet, known: dict[bytes, VehicleKind]) -> list[Group]:
         own = fleet.dofs[wheels[i] : wheels[i + 1]] - low
         key = b"|".join([own.tobytes(), *(piece for part in parts for piece in _pieces(part, low, high))])
         if key not in known:
-            blocks = [None if part is None else sp.csr_array(part[low:high, low:high]) for part in (m.K, m.M, m.C)]
+            blocks = [
+                None if part is None else sp.csr_array(part[low:high, low:high]) for part in (m.K, m.M, m.C)
+            ]
             assert blocks[0] is not None and blocks[1] is not None
             known[key] = VehicleKind(Matrices(blocks[0], blocks[1], blocks[2]), own)
         members.setdefault(key, []).append((low, int(wheels[i])))
     groups = []
     for key, places in members.items():
         kind, at = known[key], np.array(places)
-        dofs, contacts = (at[:, [j]] + np.arange(n) for j, n in enumerate((kind.matrices.size, len(kind.dofs))))
+        dofs, contacts = (
+            at[:, [j]] + np.arange(n) for j, n in enumerate((kind.matrices.size, len(kind.dofs)))
+        )
         groups.append(Group(kind, dofs, contacts))
     return groups
 

@@ -32,7 +32,7 @@ class BandBlocks:
 
     def solve(self, x: FloatArray) -> None:
         """Solve L Lᵀ x = b in place, for right-hand sides (n, k) in the order of elimination, C-contiguous."""
-        filled = x.any(axis=1)
+        filled = np.asarray(x.any(axis=1))
         first = int(filled.argmax())
         if not filled[first]:
             return

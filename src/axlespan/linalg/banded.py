@@ -22,7 +22,6 @@ from axlespan.linalg.band_kernel import (
 from axlespan.linalg.definiteness import PivotBreakdown
 from axlespan.linalg.protocol import refuse_pickling
 
-
 # Half-bandwidth times right-hand sides from which blocks pay.
 _BLOCKS_PAY = 1600
 

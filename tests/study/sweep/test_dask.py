@@ -8,6 +8,7 @@ import subprocess
 import sys
 import threading
 import time
+from contextlib import suppress
 
 import pytest
 from tests.study.sweep.conftest import numbers_differ
@@ -49,6 +50,15 @@ class Cluster:
     def scheduler(self):
         more = ("--no-dashboard", "--host", "127.0.0.1", "--port", str(self.port), "--idle-timeout", "120 s")
         return self.begin("dask_scheduler", *more)
+
+    def require_open(self):
+        """Wait until the scheduler answers."""
+        until = time.monotonic() + 20.0
+        while time.monotonic() < until:
+            with suppress(OSError), socket.create_connection(("127.0.0.1", self.port), 1.0):
+                return
+            time.sleep(0.05)
+        raise AssertionError("the scheduler does not answer")
 
     def worker(self):
         return self.begin(
@@ -125,7 +135,7 @@ def test_schedulers_that_are_killed_at_random_moments(study, tmp_path, small_tas
     study.run(tmp_path / "here")
     reference, folder, trial = study.table(), tmp_path / "there", study.trial(timed=False)
     chosen, kept = random.Random(8), 0
-    for _ in range(3):
+    for _ in range(2):
         cluster = Cluster()
         scheduler = cluster.scheduler()
         cluster.worker()
@@ -180,10 +190,10 @@ def test_a_scheduler_that_does_not_answer(study, tmp_path, monkeypatch):
 
 def test_a_scheduler_without_workers(study, cluster, tmp_path, monkeypatch):
     cluster.scheduler()
-    time.sleep(2.0)
-    monkeypatch.setattr(on_dask, "PATIENCE", 3.0)
+    cluster.require_open()
+    monkeypatch.setattr(on_dask, "PATIENCE", 1.5)
     with pytest.raises(
-        InputError, match=r"has no workers; waited 3 s for one. Start some with: dask worker tcp://"
+        InputError, match=r"has no workers; waited 2 s for one. Start some with: dask worker tcp://"
     ):
         study.run(tmp_path / "out", scheduler=cluster.address)
 

@@ -40,9 +40,19 @@ def test_numbers_do_not_depend_on_who_is_beside(study):
         assert numbers_differ(alone, beside) < EQUAL
 
 
-def test_processes_compute_the_same(study):
-    alone = rows(InProcess().run(work(study, 1)))
-    assert numbers_differ(alone, rows(Processes(2).run(work(study, 4)))) < EQUAL
+def test_processes_compute_the_same_and_tell_how_far_they_are(study_file, monkeypatch):
+    # 16 scenarios, and long enough to be seen under way
+    study = Study.load(
+        study_file(STUDY.replace("time_step: 4 ms", "time_step: 0.1 ms").replace("step: 40", "step: 80"))
+    )
+    alone = rows(InProcess().run(work(study, 128)))
+    monkeypatch.setattr(executors, "_PAUSE", 0.02)
+    shares = []
+    made = list(Processes(2).run(work(study, 4), lambda number, share: shares.append((number, share))))
+    assert numbers_differ(alone, rows(made)) < EQUAL
+    sizes = {one.number: len(one.rows) for one in made}
+    assert all(0.0 <= share <= sizes[number] + 1e-9 for number, share in shares)
+    assert any(0.0 < share < sizes[number] for number, share in shares)
 
 
 def test_a_reduced_basis_does_not_depend_on_the_batch(study_file):

@@ -141,33 +141,34 @@ def test_full_disks_at_random_moments(study_file, tmp_path, monkeypatch, small_p
         require_equal(study, folder, tmp_path / "reference")
 
 
+def killed_when(process, folder, done, which):
+    """Kill a run or one of its workers a moment after so many parts of the table are written."""
+    until = time.monotonic() + 100.0
+    while len(list((folder / "table").glob("part-*.parquet"))) < done and process.poll() is None:
+        assert time.monotonic() < until
+        time.sleep(0.002)
+    time.sleep(random.Random(done).uniform(0.0, 0.05))
+    if which == "run":
+        process.kill()
+        process.wait(30)
+        return
+    children = subprocess.run(["pgrep", "-P", str(process.pid)], capture_output=True, text=True, check=False)
+    for child in children.stdout.split()[-1:]:
+        os.kill(int(child), signal.SIGKILL)
+    process.wait(120)
+
+
 @pytest.mark.slow
 def test_kills_at_random_moments(study, path, tmp_path, start):
     study.run(tmp_path / "reference")
     chosen = random.Random(11)
     folder = tmp_path / "out"
-    whole = None
-    for what in ("nothing", "run", "worker"):
-        if what == "nothing":
-            begun = time.monotonic()
-            process = start(path, "-o", tmp_path / "timed", "--workers", 2)
-            assert process.wait(120) == 0
-            whole = time.monotonic() - begun
-            continue
-        more = ["--resume"] if (folder / "store.json").exists() else []
-        process = start(path, "-o", folder, "--workers", 2, *more)
-        time.sleep(chosen.uniform(0.2, 0.9) * whole)
-        if what == "run":
-            process.kill()
-            process.wait(30)
-        else:
-            children = subprocess.run(
-                ["pgrep", "-P", str(process.pid)], capture_output=True, text=True, check=False
-            ).stdout
-            for child in children.split()[-1:]:
-                os.kill(int(child), signal.SIGKILL)
-            process.wait(120)
-    process = start(path, "-o", folder, "--workers", 2, *(["--resume"] if folder.exists() else []))
+    process = start(path, "-o", folder, "--workers", 2)
+    first = chosen.randrange(1, 5)
+    killed_when(process, folder, first, "run")
+    process = start(path, "-o", folder, "--workers", 2, "--resume")
+    killed_when(process, folder, first + chosen.randrange(2, 5), "worker")
+    process = start(path, "-o", folder, "--workers", 1, "--resume")
     assert process.wait(120) == 0, process.stderr.read()
     require_equal(study, folder, tmp_path / "reference")
 

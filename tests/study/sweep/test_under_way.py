@@ -1,4 +1,4 @@
-"""Progress within a batch: here, in processes, on Dask; and how the command shows it."""
+"""Progress within a batch, here and on Dask, and how the command shows it; processes: test_executors."""
 
 from types import SimpleNamespace
 
@@ -6,7 +6,7 @@ import pytest
 from tests.study.sweep.conftest import STUDY
 
 from axlespan.cli import sweep as command
-from axlespan.study.sweep import Study, executors, on_dask, under_way, workshop
+from axlespan.study.sweep import Study, on_dask, under_way, workshop
 from axlespan.study.sweep.under_way import Meter
 
 # Long enough for a stretch of 256 steps to end before the run does.
@@ -70,16 +70,7 @@ def test_a_batch_tells_how_far_it_is_here(study_file, tmp_path, often):
     assert any(0.5 < share < 7.5 for share in within)
 
 
-def test_processes_tell_how_far_they_are(study_file, tmp_path, monkeypatch):
-    monkeypatch.setattr(executors, "_PAUSE", 0.02)
-    study = Study.load(study_file(LONG.replace("time_step: 0.1 ms", "time_step: 0.02 ms")))
-    seen = ran(study, tmp_path / "out", workers=2)
-    assert seen[-1] == (8, 0.0)
-    assert any(0.0 < share < 8.0 for _, share in seen)
-    assert all(done + share <= 8.0 + 1e-9 for done, share in seen)
-
-
-def test_dask_tells_how_far_tasks_are(study_file, tmp_path, monkeypatch):
+def test_dask_tells_how_far_tasks_are():
     pytest.importorskip("distributed")
     told = []
     client = SimpleNamespace(

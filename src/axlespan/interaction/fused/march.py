@@ -167,7 +167,7 @@ class FusedMarch:
         structure, fleet = self._convoy.structure, self._convoy.fleet
         for chunk in self._chunks:
             chunk.show(structure, np.asarray(lanes, dtype=np.int64))
-        load = self._convoy.known_load(stretch, k)
+        load = self._convoy.known_load(stretch, k, once=True)
         if fleet is not None:
             fleet.forces = self._fleet[0].copy()
             if len(stretch.into):

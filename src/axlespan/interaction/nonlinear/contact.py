@@ -124,10 +124,13 @@ class NonlinearCoupling:
         if self._stretch is not stretch:
             self._enter(convoy, stretch)
         step = stretch.first + k
+        count = 0
         for _ in range(_RELEASES):
-            forces, approach, free = self._attempt(convoy, stretch, k, external)
+            forces, approach, free, more = self._attempt(convoy, stretch, k, external)
+            count += more
             if not self._release(convoy, step, forces):
                 break
+        self.iterations.append(count)
         load = None
         if fleet is not None and len(stretch.into):
             load = structure.path_load(stretch.held[k], stretch.weights[k], forces[stretch.into])
@@ -163,8 +166,8 @@ class NonlinearCoupling:
 
     def _attempt(
         self, convoy: Convoy, stretch: Stretch, k: int, external: FloatArray | None
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Predict both bodies and solve the interface; forces, approaches and free approaches (n_coupled,)."""
+    ) -> tuple[FloatArray, FloatArray, FloatArray, int]:
+        """Predict both bodies and solve the interface; forces, approaches and free approaches (n_coupled,), iterations."""
         structure, fleet, into = convoy.structure, convoy.fleet, stretch.into
         known = convoy.known_load(stretch, k)
         structure.predict(None if external is None else convoy.vectors @ external, known)
@@ -174,8 +177,7 @@ class NonlinearCoupling:
         nothing = np.zeros(0)
         if fleet is None:
             count = self._on_structure(structure, stretch, k, nothing, nothing, nothing, nothing)
-            self.iterations.append(count)
-            return nothing, nothing, nothing
+            return nothing, nothing, nothing, count
         free = stretch.gap[k] - fleet.at_wheels()
         if len(into):
             free[into] += structure.gather(stretch.flat[k], stretch.held[k], stretch.weights[k])
@@ -188,8 +190,7 @@ class NonlinearCoupling:
             forces[group.wheels], approach[group.wheels] = solution.forces, solution.coordinates
             count = max(count, len(solution.residuals))
         count = max(count, self._on_structure(structure, stretch, k, free, forces, approach, fleet.forces))
-        self.iterations.append(count)
-        return forces, approach, free
+        return forces, approach, free, count
 
     def _on_structure(
         self,

@@ -166,7 +166,10 @@ class NonlinearMarch(FusedMarch):
         forced = external is not None or bool(len(stretch.forced)) or self._numbers[3] != 0.0
         approaches = np.stack([coupling.approach, coupling.before, coupling.earlier])
         last, n_step = np.stack([field.q, field.e, field.rate]), stop - first
-        counts, history = np.zeros(n_step, dtype=np.int64), np.zeros((n_step if field.on_ground else 0, field.n))
+        counts, history = (
+            np.zeros(n_step, dtype=np.int64),
+            np.zeros((n_step if field.on_ground else 0, field.n)),
+        )
         most = np.array([len(coupling.residuals), field.largest])
         k, why, spring = _march()(
             (0,),
@@ -180,7 +183,12 @@ class NonlinearMarch(FusedMarch):
             self._fleet_of(chunk, stretch),
             self._system,
             (near, self._watched, vehicles, forces, sums, self._sums, chunk.lane),
-            ((*self._wheel_laws, approaches, coupling.time_step), coupling.laws.may_part, self._apart, coupling.scale),
+            (
+                (*self._wheel_laws, approaches, coupling.time_step),
+                coupling.laws.may_part,
+                self._apart,
+                coupling.scale,
+            ),
             self._springs,
             (last, counts, history),
             (self._slowest, most),

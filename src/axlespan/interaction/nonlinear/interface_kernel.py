@@ -87,7 +87,12 @@ def deviations(
             force, c = _power(first, second, moving)
         else:
             force, c = _read(points, kinds[i, 1], kinds[i, 2], moving)
-        factor, linear, damped, held = numbers[i, 3], numbers[i, 5] * e[r], numbers[i, 6] * moving, numbers[i, 7]
+        factor, linear, damped, held = (
+            numbers[i, 3],
+            numbers[i, 5] * e[r],
+            numbers[i, 6] * moving,
+            numbers[i, 7],
+        )
         left = (factor * force - held) - (linear + damped)
         q[r] = 0.0 if abs(left) <= _EXACT * (abs(linear) + abs(damped) + abs(held)) else left
         by_e[r], by_rate[r] = factor * k - numbers[i, 5], factor * c - numbers[i, 6]

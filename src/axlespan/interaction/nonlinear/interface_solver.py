@@ -33,7 +33,7 @@ ROUNDING = 1e-14  # a residual below this share of it is zero
 LIMIT, HALVINGS = 60, 8
 # Of a search for where a potential is flat along a step: bisections, and the share of its first slope that is flat.
 _BISECTIONS, _FLAT = 60, 0.02
-_WELL = 0.25  # a step after which this share of the squared residual is left goes well, whatever a potential does
+_WELL = 0.25  # a step that leaves this share of the squared residual goes well, whatever a potential does
 
 
 #: Forces, residual [N], Jacobian, and which rows touch.

@@ -31,7 +31,7 @@ RIGID, ONE_SIDED, HERTZ, PUSHING, PULLING = range(5)
 #: Why a compiled loop returned: all steps are made; a step is not for it; the column of a spring is needed.
 DONE, UNUSUAL, COLUMN = range(3)
 #: Springs that may deviate at a time, in the compiled loop.
-LARGEST = 160
+LARGEST = 600
 
 
 @dataclass(frozen=True, eq=False)

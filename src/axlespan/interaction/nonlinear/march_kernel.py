@@ -106,7 +106,9 @@ def _solve(n: Any, n_wheel: Any, laws: Any, scale: float, rooms: Any, figures: A
 
 
 @as_compiled
-def _solve_apart(apart: Any, laws: Any, scale: float, rooms: Any, figures: Any, forces: Any, wheels: Any) -> int:
+def _solve_apart(
+    apart: Any, laws: Any, scale: float, rooms: Any, figures: Any, forces: Any, wheels: Any
+) -> int:
     """Wheels of vehicles off the structure, one vehicle after the other; iterations, or -1: no convergence."""
     vehicles, starts, begin, blocks = apart
     S, _, names, vectors, _ = rooms
@@ -115,7 +117,11 @@ def _solve_apart(apart: Any, laws: Any, scale: float, rooms: Any, figures: Any, 
         low = starts[vehicle]
         n = starts[vehicle + 1] - low
         for i in range(n):
-            names[i], vectors[FREE, i], vectors[FORCE, i] = low + i, wheels[_GAP, low + i], wheels[_BEFORE, low + i]
+            names[i], vectors[FREE, i], vectors[FORCE, i] = (
+                low + i,
+                wheels[_GAP, low + i],
+                wheels[_BEFORE, low + i],
+            )
             for j in range(n):
                 S[i, j] = blocks[begin[vehicle] + i * n + j]
         count = _solve(n, n, laws, scale, rooms, figures)
@@ -128,7 +134,9 @@ def _solve_apart(apart: Any, laws: Any, scale: float, rooms: Any, figures: Any, 
 
 
 @as_compiled
-def _assemble(system: Any, k: int, springs: Any, wheels_at: Any, weights: Any, into: Any, active: Any, rooms: Any) -> Any:
+def _assemble(
+    system: Any, k: int, springs: Any, wheels_at: Any, weights: Any, into: Any, active: Any, rooms: Any
+) -> Any:
     """Fill in compliance and names of wheels and active springs; how many there are, and nothing to wait for.
 
     Or -1, and the spring whose column is not there, counted from one; zero: there are too many.
@@ -291,18 +299,19 @@ def march(
             write(lanes, state, tape, k - 1)
         backward(lanes, width, lower, x, n, 0)
         _clear(added, reach, shift)
-        iterations, needed, n_unknown = 0, 0, 0
+        apart_ones, iterations, needed, n_unknown = 0, 0, 0, 0
         if n_coupled:
             predict_fleet(fleet, p, late, wp, gaps[k], wheels[_GAP])
             _free_wheels(into, place[k], weights[k], state, x, w, late, wheels[_GAP])
             for i in range(n_coupled):
                 wheels[_BEFORE, i], wheels[_APPROACH, i] = forces[i], 0.0
             on_ground(fleet, wheels[_GAP])
-            iterations = _solve_apart(apart, laws, scale, rooms, figures, forces, wheels)
+            apart_ones = _solve_apart(apart, laws, scale, rooms, figures, forces, wheels)
             for i in system[0]:
                 forces[i] = wheels[_BEFORE, i]
         _free_springs(springs, last, state, x, w, late, room)
-        while iterations >= 0:
+        usual = apart_ones >= 0
+        while usual:
             n_unknown, needed = _assemble(system, k, springs, wheels_at[k], weights[k], among, active, rooms)
             count = 0
             if n_unknown > 0:
@@ -310,7 +319,7 @@ def march(
                     n_unknown, system[0], laws, scale, rooms, figures, forces, wheels, values
                 )
             if n_unknown < 0 or (n_unknown > 0 and count == 0):
-                iterations = -1
+                usual = False
                 break
             iterations += count
             _respond(
@@ -319,7 +328,6 @@ def march(
             if _settle(springs, added, w, u_from_a, rate_from_e, room):
                 break
             _clear(added, reach, shift)
-        usual = iterations >= 0
         for i in range(n_coupled):
             usual = usual and (not may_part[i] or forces[i] > 0.0)
         if not usual:
@@ -328,7 +336,7 @@ def march(
                 forces[i] = wheels[_BEFORE, i]
             return k, COLUMN if needed > 0 else UNUSUAL, needed - 1
         _remember(k - first, forces, wheels, laws, room, last, history)
-        counts[k - first] = iterations
+        counts[k - first] = max(apart_ones, iterations)
         figures[1][1] = max(figures[1][1], n_unknown - len(system[0]))
         take_fleet(fleet, late, tape, k)
     forward(

@@ -28,6 +28,10 @@ class Gathering:
     _count: int = 0
     _size: int = 0
 
+    def is_vain(self, n_step: int) -> bool:
+        """Whether so many steps are enough by themselves, and none waits."""
+        return not self._tapes and n_step >= _STEPS // 2
+
     def add(self, steps: IntArray, positions: FloatArray, tape: LaneTape) -> bool:
         """Gather consecutive steps; whether these are enough."""
         own = LaneTape(tape.near.copy(), tape.vehicles.copy(), tape.forces.copy(), tape.sums.copy())

@@ -51,8 +51,35 @@ class CompatibilityMonitor:
 class BalanceMonitor:
     """Vertical equilibrium of the whole structure at each step: reactions, loads, wheels and inertia."""
 
-    def __init__(self, plan: Plan, prescribed_paths: list[tuple[IntArray, PolynomialPath]]) -> None:
+    def __init__(
+        self,
+        plan: Plan,
+        prescribed_paths: list[tuple[IntArray, PolynomialPath]],
+        like: BalanceMonitor | None = None,
+    ) -> None:
         self._plan = plan
+        if like is None:
+            self._read_tables(plan)
+        else:
+            self._t_prescribed, self._t_free, self._rows = like._t_prescribed, like._t_free, like._rows
+            self.mass, self.sums, self._loads = like.mass, like.sums, like._loads
+        # Each wheel's line when the whole structure moves up by one.
+        free = [(path.wheels, path.free) for path in plan.rows.paths]
+        self._lifted = [
+            (wheels, path.moved_by(unit))
+            for paths, unit in ((free, self._t_free), (prescribed_paths, self._t_prescribed))
+            for wheels, path in paths
+            if len(path.path_dofs)
+        ]
+        self._inertia, self._worst, self._scale = np.zeros(1), 0.0, 0.0
+        # Steps whose accelerations were set anew, with the inertia that these leave out: those where a wheel landed,
+        # and, with the new ones (n,), those after which a wheel let go.
+        self.restarted: Mapping[int, float] = {}
+        self.released: Mapping[int, tuple[FloatArray, float]] = {}
+        self.between: Mapping[int, Sequence[Substep]] = {}  # steps that were cut
+
+    def _read_tables(self, plan: Plan) -> None:
+        """What follows from the structure alone."""
         system = plan.crossing.structure.system
         t = system.translation("z")
         self._t_prescribed = t[system.prescribed]
@@ -76,20 +103,6 @@ class BalanceMonitor:
             ]
         )
         self._loads = [(float(t @ load.vector), load.factor) for load in system.loads]
-        # Each wheel's line when the whole structure moves up by one.
-        free = [(path.wheels, path.free) for path in plan.rows.paths]
-        self._lifted = [
-            (wheels, path.moved_by(unit))
-            for paths, unit in ((free, self._t_free), (prescribed_paths, self._t_prescribed))
-            for wheels, path in paths
-            if len(path.path_dofs)
-        ]
-        self._inertia, self._worst, self._scale = np.zeros(1), 0.0, 0.0
-        # Steps whose accelerations were set anew, with the inertia that these leave out: those where a wheel landed,
-        # and, with the new ones (n,), those after which a wheel let go.
-        self.restarted: Mapping[int, float] = {}
-        self.released: Mapping[int, tuple[FloatArray, float]] = {}
-        self.between: Mapping[int, Sequence[Substep]] = {}  # steps that were cut
 
     def look(
         self,
@@ -190,9 +203,14 @@ class TensionMonitor:
         n = plan.rows.n_contact
         self.largest, self.smallest = np.full(n, -np.inf), np.full(n, np.inf)
         self.largest_at, self.smallest_at = np.zeros(n), np.zeros(n)
+        # Moving forces stay as they are.
+        self._constant = not len(plan.fleet.coupled) and bool(np.all(plan.fleet.weight >= 0.0))
 
     def look(self, steps: IntArray, positions: FloatArray, forces: FloatArray) -> None:
         """Look at consecutive steps: positions and forces (n_step, n_contact)."""
+        if self._constant:
+            self.largest = self.smallest = self._plan.fleet.weight
+            return
         times = self._plan.times_of(steps)
         self._peaks(times, forces)
         pulled = forces < 0.0

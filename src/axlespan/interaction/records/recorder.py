@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -89,7 +90,10 @@ class Recorder:
         self.envelopes = EnvelopeMonitor(plan)
         self.line: LineHistories = LineHistories(plan, None if known is None else known.line)
         self._keepers: tuple[Keeper, ...] = (self.sections, self.stresses, self.envelopes, self.line)
-        self.balance, self.tension = BalanceMonitor(plan, self.reactions.paths), TensionMonitor(plan)
+        self.balance: BalanceMonitor = BalanceMonitor(
+            plan, self.reactions.paths, None if known is None else known.balance
+        )
+        self.tension = TensionMonitor(plan)
         self.noise = NoiseMonitor(plan.fleet.weight, plan.fleet.coupled)
         # Steps at which a wheel landed, or after which one let go, with what was set anew: see the balance monitor.
         self.restarted: dict[int, float] = {}
@@ -153,7 +157,7 @@ class Recorder:
 
     def work_up(self, steps: IntArray, positions: FloatArray, tape: LaneTape) -> None:
         """Work up the tape of consecutive good steps, at once or later: histories, reactions, peaks, checks."""
-        if self._at_once:
+        if self._at_once or self._gathering.is_vain(len(steps)):
             self._take(steps, positions, tape)
         else:
             self.completed = int(steps[-1])
@@ -183,11 +187,16 @@ class Recorder:
         self.finite = False
         return self._divergence(int(steps[n_good]), tape.forces[n_good], tape.vehicles[0, n_good])
 
-    def first_bad(self, tape: LaneTape) -> int | None:
-        """The first step with a value that is not finite or a contact force that has run away."""
+    @cached_property
+    def largest_force(self) -> float:
+        """A contact force so large means that the run has diverged [N]."""
         fleet = self.plan.fleet
         weight = float(np.abs(fleet.weight).max()) or 9.81 * float(fleet.matrices.M.sum())  # without gravity
-        limit = _DIVERGED * max(weight, 1.0)
+        return _DIVERGED * max(weight, 1.0)
+
+    def first_bad(self, tape: LaneTape) -> int | None:
+        """The first step with a value that is not finite or a contact force that has run away."""
+        limit = self.largest_force
         with np.errstate(all="ignore"):  # a sum is finite only if everything in it is
             totals = [part.sum() for part in (tape.vehicles, tape.near, tape.sums)]
             if np.isfinite(totals).all() and np.abs(tape.forces).max(initial=0.0) < limit:
@@ -218,39 +227,42 @@ class Recorder:
         values = tape.near[:, :, self._inverse]
         at_sensors = values.reshape(3, len(steps), *self._sensor_dofs.shape)
         sensors = (at_sensors * self._sensor_weights).sum(axis=3) + self._moved_sensors(steps)
-        first = self.balance.sums.count
-        reactions = self.reactions.of(steps, tape.sums[:, first:], positions, tape.forces)
-        self.balance.look(steps, tape.sums[:, :first], reactions, positions, tape.forces)
+        own = self.balance.sums.count
+        reactions = self.reactions.of(steps, tape.sums[:, own:], positions, tape.forces)
+        self.balance.look(steps, tape.sums[:, :own], reactions, positions, tape.forces)
         self.tension.look(steps, positions, tape.forces)
         self.noise.look(tape.forces)
         for keeper, at in zip(self._keepers, self._more, strict=True):
-            keeper.look(steps, tape.near[:, :, at], positions, tape.forces)
+            own_near = tape.near if len(at) == len(self.selected) else tape.near[:, :, at]
+            keeper.look(steps, own_near, positions, tape.forces)
         for step in [step for step in self.released if step < steps[-1]]:
             del self.released[step]
         for step in [step for step in self.between if step <= steps[-1]]:
             del self.between[step]
-        kept = np.flatnonzero(steps % self.every == 0)
-        into = steps[kept] // self.every
+        first = int(-(-steps[0] // self.every))  # of the kept steps
+        kept = slice(first * self.every - int(steps[0]), None, self.every)
+        into = slice(first, first + len(steps[kept]))
         h = self.histories
         h.contact_force[into], h.contact_position[into] = tape.forces[kept], positions[kept]
         h.support_reaction[into] = reactions[kept]
         for i, name in enumerate(_QUANTITIES):
-            h.vehicle[name][into] = tape.vehicles[i, kept]
-            h.sensor[name][into] = sensors[i, kept]
+            if h.vehicle[name].size:
+                h.vehicle[name][into] = tape.vehicles[i, kept]
+            if h.sensor[name].size:
+                h.sensor[name][into] = sensors[i, kept]
         self.completed = int(steps[-1])
 
     def _moved_sensors(self, steps: IntArray) -> FloatArray:
         """What supports that move add at the sensors (3, n_step, n_sensor): E_P u_P and its rates."""
         plan = self.plan
+        if not len(plan.moving) or not len(self._sensor_dofs):
+            return np.zeros((3, 1, len(self._sensor_dofs)))
         result = np.zeros((3, len(steps), len(self._sensor_dofs)))
-        if len(plan.moving) and len(self._sensor_dofs):
-            times = plan.times_of(steps)
-            rows = self._sensor_rows[:, plan.crossing.structure.system.prescribed[plan.moving]]
-            for i, name in enumerate(("value", "velocity", "acceleration")):
-                motions = [
-                    getattr(plan.crossing.structure.system.motions[j], name)(times) for j in plan.moving
-                ]
-                result[i] = (rows @ np.array(motions)).T
+        times = plan.times_of(steps)
+        rows = self._sensor_rows[:, plan.crossing.structure.system.prescribed[plan.moving]]
+        for i, name in enumerate(("value", "velocity", "acceleration")):
+            motions = [getattr(plan.crossing.structure.system.motions[j], name)(times) for j in plan.moving]
+            result[i] = (rows @ np.array(motions)).T
         return result
 
     # --- at the end ----------------------------------------------------------------------------

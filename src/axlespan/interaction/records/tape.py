@@ -91,6 +91,14 @@ class Tape:
         """What is written for the stretch: d.o.f. lane after lane (n_step, 3, …), vehicles, forces, sums."""
         return self._near, self._vehicles, self._forces, self._sums
 
+    def is_good(self, largest: float) -> bool:
+        """Whether all that is written is finite, and no contact force is so large."""
+        n = self.filled
+        with np.errstate(all="ignore"):  # a sum is finite only if everything in it is
+            parts = (self._near[:n], self._vehicles[:n], self._sums[:n])
+            finite = all(bool(np.isfinite(part.sum())) for part in parts)
+            return finite and bool(np.abs(self._forces[:n]).max(initial=0.0) < largest)
+
     def last_forces(self, contacts: slice) -> FloatArray:
         """Forces (n_contact,) of the last step."""
         return self._forces[self.filled - 1, contacts].copy()

@@ -105,7 +105,8 @@ class _Shards:
         """Whether the files that rows (n,) name hold their scenarios; rows that need none count as held."""
         held = np.ones(len(ids), dtype=bool)
         rows = np.flatnonzero(wanted)
-        files, which = np.unique(np.array([names[row] or "" for row in rows], dtype=str), return_inverse=True)
+        words = np.array([names[row] or "" for row in rows.tolist()], dtype=np.str_)
+        files, which = np.unique(words, return_inverse=True)
         rows = rows[np.argsort(which, kind="stable")]
         for name, own in zip(files.tolist(), np.split(rows, np.cumsum(np.bincount(which))[:-1]), strict=True):
             held[own] = np.isin(ids[own], self._scenarios(name)) if name else False

@@ -84,7 +84,7 @@ def _line(result: Result) -> dict[str, float]:
 
 def _largest(values: FloatArray) -> FloatArray:
     """Largest amounts (n, ...) over time, without a copy of the table."""
-    return np.maximum(-values.min(axis=0), values.max(axis=0))
+    return np.asarray(np.maximum(-values.min(axis=0), values.max(axis=0)))
 
 
 def _contacts(result: Result) -> dict[str, Any]:
