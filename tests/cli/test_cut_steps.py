@@ -12,7 +12,7 @@ structure: {kind: simple-span, length: 25 m, youngs_modulus: 2.87 GPa, second_mo
             mass_per_length: 2303 kg/m, elements: 8}
 train:
   - vehicle: multibody
-    bodies: [{name: body, mass: 5 t}]
+    bodies: [{name: body, mass: 5 t, position: 0 m}]
     wheels: [{position: 0 m, mass: 500 kg}]
     suspensions: [{between: [body, wheel1], stiffness: 1595 kN/m, damping: 20 kNs/m,
                    bump_stop: {gap: 30 mm, stiffness: 10 MN/m}}]

@@ -129,22 +129,16 @@ class Convoy:
         dofs = self.lanes[lane].recorder.selected
         return self.tape.of(lane, dofs, self.vehicle_dofs[lane], self.contacts[lane])
 
-    def moment(self, lane: int) -> tuple[State, State, FloatArray, FloatArray]:
+    def moment(
+        self, lane: int, structure: State | None = None
+    ) -> tuple[State, State, FloatArray, FloatArray]:
         """Structure, vehicles, Eᵀ X (n,) and contact forces (n_coupled,) of one lane at the last completed step."""
+        structure = structure or self.structure.full(lane)
+        load = self.structure.load_of(lane)
         if self.fleet is None:
-            return (
-                self.structure.full(lane),
-                State(np.zeros((3, 0))),
-                self.structure.load_of(lane),
-                np.zeros(0),
-            )
+            return structure, State(np.zeros((3, 0))), load, np.zeros(0)
         vehicles = State(self.fleet.state.values[:, self.vehicle_dofs[lane]])
-        return (
-            self.structure.full(lane),
-            vehicles,
-            self.structure.load_of(lane),
-            self.fleet.forces[self.coupled[lane]],
-        )
+        return structure, vehicles, load, self.fleet.forces[self.coupled[lane]]
 
     def contact_at(self, stretch: Stretch, k: int) -> tuple[FloatArray, FloatArray]:
         """Displacements of all wheels and of the line under them (n_coupled,), after step k."""
@@ -160,14 +154,14 @@ class Convoy:
         counts = self.lanes[0].recorder.counts
         counts[what] = counts.get(what, 0) + number
 
-    def save(self, n_step: int) -> None:
+    def save(self, n_step: int, structure: Callable[[int], State]) -> None:
         """Put the states of the bodies back into the lanes that are not at their ends, after so many steps."""
         for i, lane in enumerate(self.lanes):
             own = min(n_step, lane.left)
             lane.done += own
             if own < n_step:
                 continue
-            lane.structure, lane.load = self.structure.lane(i), self.structure.load_of(i)
+            lane.structure, lane.load = structure(i), self.structure.load_of(i)
             lane.forces = self.tape.last_forces(self.contacts[i])
             if self.fleet is not None:
                 lane.fleet = State(self.fleet.state.values[:, self.vehicle_dofs[i]].copy())
@@ -185,6 +179,10 @@ class Leap(Protocol):
 
     def go(self, stretch: Stretch, first: int, stop: int, external: FloatArray | None) -> None:
         """Make steps ``first`` to ``stop`` of a stretch under weighted factors (n_step, n_term), and write the tape."""
+        ...
+
+    def state_of(self, lane: int) -> State:
+        """The structure of one lane at the last step made."""
         ...
 
     def show(self, stretch: Stretch, k: int, lanes: Sequence[int]) -> None:
@@ -247,14 +245,15 @@ def _drive(
                 if own := min(stretch.n_step, lane.left):
                     tape, positions = convoy.tape_of(i).upto(own), stretch.crossings[i].positions[:own]
                     lane.recorder.work_up(stretch.steps[:own], positions, tape)
-            convoy.save(stretch.n_step)
-            staying = [lane for lane in convoy.lanes if lane.left]
+            convoy.save(stretch.n_step, convoy.structure.lane if leap is None else leap.state_of)
+            staying = convoy.lanes
+        staying = [lane for lane in staying if lane.left]
         if not staying:
             return
         # A few lanes that are at their ends may idle along: forming a convoy anew has its price.
         idle = len(convoy.lanes) - len(staying)
         if failed or (idle and (leap is None or idle >= _IDLE * len(convoy.lanes))):
-            convoy, leap = formed([lane for lane in staying if lane.left])
+            convoy, leap = formed(staying)
 
 
 def _make(
@@ -281,10 +280,11 @@ def _make(
                 [i for i, one in enumerate(watching) if one.looks_at(stretch.first + k)] if k in looks else []
             )
             if leap is not None:
-                last = k == stretch.n_step - 1
-                leap.show(stretch, k, range(len(watching)) if last else who)
+                whole = k == stretch.n_step - 1 or len(watching) == 1
+                leap.show(stretch, k, range(len(watching)) if whole else [])
+            state_of = convoy.structure.full if leap is None else leap.state_of
             for i in who:
-                watching[i].look(stretch.first + k, *convoy.moment(i))
+                watching[i].look(stretch.first + k, *convoy.moment(i, state_of(i)))
     own = {i: min(convoy.tape.filled, lane.left) for i, lane in enumerate(convoy.lanes) if lane.left}
     found: dict[int, tuple[int, str | None]] = {}
     if not convoy.tape.is_good(min(lane.recorder.largest_force for lane in convoy.lanes)):

@@ -9,6 +9,7 @@ from axlespan.errors import InputError
 from axlespan.model.nonlinear import SpringLaw, UnilateralSpring
 from axlespan.running.structure import Structure
 from axlespan.study import case_multibody
+from axlespan.study.build_elements import with_elements
 from axlespan.study.case_laws import gap_of
 from axlespan.vehicles import BodyLoad, Placement, Train, Vehicle
 from axlespan.vehicles.vehicle import LEFT, RIGHT
@@ -22,7 +23,7 @@ def vehicle_of_bodies(case: case_multibody.Multibody) -> Vehicle:
     InputError
         If a body can move freely, or a load has nothing to act on; fields are paths under the entry.
     """
-    return vehicles.multibody(
+    vehicle = vehicles.multibody(
         bodies=[
             vehicles.Body(b.name, b.mass, b.position, b.inertia, b.roll_inertia, b.height, b.side)
             for b in case.bodies
@@ -48,6 +49,7 @@ def vehicle_of_bodies(case: case_multibody.Multibody) -> Vehicle:
         hinges=[vehicles.Hinge(_pair(h.between, i), h.at) for i, h in enumerate(case.hinges)],
         loads=body_loads(case.loads),
     )
+    return with_elements(vehicle, case.own_elements)
 
 
 def _laws(case: case_multibody.Suspension) -> tuple[tuple[SpringLaw, float], ...]:

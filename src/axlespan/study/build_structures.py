@@ -23,6 +23,7 @@ from axlespan.errors import InputError
 from axlespan.model.parts import SpringPart
 from axlespan.running.structure import Structure
 from axlespan.study import case_laws, case_structure
+from axlespan.study.build_elements import with_elements
 from axlespan.study.build_matrices import structure_of_matrices
 from axlespan.study.build_mesh import structure_of_mesh
 from axlespan.study.build_supports import damping_of, supports_of_beams
@@ -55,7 +56,11 @@ def structure_of(case: case_structure.Structure) -> BuiltStructure:
                 fix="Give it stiffness: {z: 1 GN/m} in place of fixed",
             ) from error
         built = replace(built, structure=structure)
-    return _with_laws(built, getattr(case, "nonlinear_springs", ()))
+    built = _with_laws(built, getattr(case, "nonlinear_springs", ()))
+    own = getattr(case, "own_elements", ())
+    facts = tuple(f"element     {item.element} of {item.file.name} on {', '.join(item.dofs)}" for item in own)
+    structure = with_elements(built.structure, own)
+    return replace(built, structure=structure, facts=(*built.facts, *facts))
 
 
 def _with_laws(built: BuiltStructure, springs: Sequence[case_laws.SpringsWithLaw]) -> BuiltStructure:

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from axlespan.study.case_damping import StructuralDamping
+from axlespan.study.case_elements import OwnElements
 from axlespan.study.case_laws import NonlinearSprings
 from axlespan.study.case_support import Bearing
 from axlespan.study.case_track import Laid
@@ -72,5 +73,7 @@ class BeamGrid(Part):
     """Structural damping; none when left out."""
     nonlinear_springs: NonlinearSprings = ()
     """Springs and dashpots that follow a law: pads, ballast, supports. Own weight acts first then."""
+    own_elements: OwnElements = ()
+    """Nonlinear elements of one's own, written in Python. Own weight acts first then."""
     track: Laid = None
     """Track on the lines left and right of the first track, before and behind the deck."""

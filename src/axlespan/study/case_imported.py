@@ -10,6 +10,7 @@ from pydantic import Field, model_validator
 
 from axlespan.errors import InputError
 from axlespan.study.case_damping import StructuralDamping
+from axlespan.study.case_elements import OwnElements
 from axlespan.study.case_laws import NonlinearSprings
 from axlespan.study.case_made_mesh import MadeMesh
 from axlespan.study.case_nodes import (
@@ -222,6 +223,8 @@ class MeshStructure(Mesh):
     """Supports on springs that only push: bearings that may lift. Own weight acts first then."""
     nonlinear_springs: NonlinearSprings = ()
     """Springs and dashpots that follow a law: pads, ballast, supports. Own weight acts first then."""
+    own_elements: OwnElements = ()
+    """Nonlinear elements of one's own, written in Python. Own weight acts first then."""
     track: Laid = None
     """Track on the running line, or in space on two running lines left and right; none when left out."""
 

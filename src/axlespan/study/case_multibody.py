@@ -21,6 +21,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from axlespan.errors import InputError
+from axlespan.study.case_elements import OwnElements
 from axlespan.study.case_laws import BumpStop, Law, UnilateralLaw
 from axlespan.study.case_placing import Placed
 from axlespan.study.checks import Part
@@ -158,6 +159,8 @@ class Multibody(Placed):
     """Hinges between bodies."""
     loads: tuple[BodyLoad, ...] = ()
     """Constant loads on bodies."""
+    own_elements: OwnElements = ()
+    """Nonlinear elements of one's own, written in Python, on d.o.f. such as body.z and wheel1.z."""
 
     @property
     def wheel_positions(self) -> tuple[float, ...]:

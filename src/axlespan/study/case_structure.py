@@ -9,6 +9,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from axlespan.errors import InputError
 from axlespan.study.case_condition import DamagedZone, Temperature
 from axlespan.study.case_damping import StructuralDamping
+from axlespan.study.case_elements import OwnElements
 from axlespan.study.case_grid import BeamGrid
 from axlespan.study.case_imported import MeshStructure
 from axlespan.study.case_laws import NonlinearSprings
@@ -74,6 +75,8 @@ class SimpleSpan(Part):
     """Supports on springs that only push: bearings that may lift. Own weight acts first then."""
     nonlinear_springs: NonlinearSprings = ()
     """Springs and dashpots that follow a law: pads, ballast, supports. Own weight acts first then."""
+    own_elements: OwnElements = ()
+    """Nonlinear elements of one's own, written in Python. Own weight acts first then."""
     track: Laid = None
     """Track on the bridge, before and behind it; wheels run on the deck when left out."""
 
@@ -142,6 +145,8 @@ class _Spans(BeamProperties):
     """Supports on springs that only push: bearings that may lift. Own weight acts first then."""
     nonlinear_springs: NonlinearSprings = ()
     """Springs and dashpots that follow a law: pads, ballast, supports. Own weight acts first then."""
+    own_elements: OwnElements = ()
+    """Nonlinear elements of one's own, written in Python. Own weight acts first then."""
     track: Laid = None
     """Track on the bridge, before and behind it; wheels run on the deck when left out."""
 

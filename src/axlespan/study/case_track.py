@@ -10,6 +10,7 @@ from pydantic import BeforeValidator, Discriminator, Field, model_validator
 from axlespan.bridges.rails import RAILS
 from axlespan.bridges.track_presets import PRESETS
 from axlespan.errors import InputError
+from axlespan.study.case_elements import OwnElements
 from axlespan.study.case_laws import NonlinearSprings
 from axlespan.study.check_lists import Several
 from axlespan.study.checks import Checked, Measured, OneOf, Part, Whole
@@ -234,6 +235,8 @@ class TrackStructure(Part):
     """Whether there are two rails, left and right, on sleepers that roll."""
     nonlinear_springs: NonlinearSprings = ()
     """Springs and dashpots that follow a law: pads, ballast. Own weight acts first then."""
+    own_elements: OwnElements = ()
+    """Nonlinear elements of one's own, written in Python. Own weight acts first then."""
 
     @model_validator(mode="after")
     def _no_bridge(self) -> Self:

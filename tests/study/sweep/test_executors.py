@@ -104,7 +104,7 @@ def test_a_task_that_kills_its_process_is_given_up_and_the_others_are_done(study
     monkeypatch.syspath_prepend(str(Path(__file__).parents[3]))  # processes find this module there
     monkeypatch.setattr(executors, "run_task", deadly)
     monkeypatch.setattr(executors, "TRIES", 1)
-    outcomes = list(Processes(2).run(work(study, 6)))
+    outcomes = list(Processes(1).run(work(study, 6)))  # two tasks are on their way when it dies
     lost = [one for one in outcomes if isinstance(one, Lost)]
     done = sorted(row["id"] for one in outcomes if not isinstance(one, Lost) for row in one.rows)
     assert len(lost) == 1 and 3 in lost[0].ids

@@ -146,6 +146,22 @@ def test_traffic_mixes_trains_by_their_shares(study_file):
             "never gets from the first value to the last",
         ),
         (
+            "vary: {crossing.speed: {from: 1 m/s, to: 2 m/s, step: -0.5 m/s}}",
+            "step = -0.5 m/s: never gets from the first value to the last. Write 0.5 m/s",
+        ),
+        (
+            "vary: {crossing.speed: {from: 1 m/s, to: 2 m/s, step: 0 m/s}}",
+            "step = 0 m/s: must not be zero. Write how far values are apart, or count: 57 in its place",
+        ),
+        (
+            "vary: {crossing.speed: {from: 140, to: 420 km/h, step: 5 km/h}}",
+            "vary.crossing.speed.from = 140: has no unit, and to has one. Write 140 km/h",
+        ),
+        (
+            "vary: {crossing.irregularity.seed: {seeds: 3}}",
+            "8:8: vary.crossing.irregularity.seed: needs crossing.irregularity, which the base does not have",
+        ),
+        (
             "vary: {crossing.speed: {from: 0, to: 1, step: 1e-9}}",
             "makes 1000000001 values; at most 1000000 are possible",
         ),

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from axlespan.dynamics.integrator import State
 from axlespan.interaction.bodies import StructureBody
 from axlespan.interaction.contact_system import Stretch
 from axlespan.interaction.fused.banded_body import BandedBody
@@ -108,6 +109,10 @@ class Chunk:
         if weight and len(dofs):
             lanes = slice(self.lane, self.lane + self.used)
             self._extra[self._body.rank[dofs], : self.used] -= weight * load.reshape(len(dofs), -1)[:, lanes]
+
+    def state_of(self, lane: int) -> State:
+        """The state of one of the lanes."""
+        return State(np.ascontiguousarray(self._values[:, :, lane - self.lane][:, self._body.rank]))
 
     def show(self, structure: StructureBody, lanes: IntArray) -> None:
         """Give back the states of those of some lanes that are here."""

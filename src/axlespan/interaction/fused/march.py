@@ -16,6 +16,7 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from axlespan.dynamics.block_step import Blocks, BlockStepper
+from axlespan.dynamics.integrator import State
 from axlespan.errors import AnalysisError
 from axlespan.interaction.bodies import PreparedStructure, StructureBody
 from axlespan.interaction.contact_system import Stretch
@@ -161,6 +162,11 @@ class FusedMarch:
         return (
             forces, stretch.gap, chunk.contacts, chunk.dofs, values, work, result, static, dofs, blocks, *rest
         )  # fmt: skip
+
+    def state_of(self, lane: int) -> State:
+        """The structure of one lane at the last step made."""
+        (chunk,) = (one for one in self._chunks if one.lane <= lane < one.lane + one.used)
+        return chunk.state_of(lane)
 
     def show(self, stretch: Stretch, k: int, lanes: Sequence[int]) -> None:
         """Bring the bodies of the convoy to the step just made; of the structure, the states of some lanes."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cache
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -14,7 +15,16 @@ from axlespan.interaction.convoy import Convoy, Couple, Leaper
 from axlespan.interaction.fused.march import FusedMarch
 from axlespan.interaction.nonlinear.contact import NonlinearCoupling
 from axlespan.interaction.nonlinear.interface_solver import LIMIT
-from axlespan.interaction.nonlinear.law_codes import COLUMN, DONE, LARGEST, CodedSprings, CodedWheels
+from axlespan.interaction.nonlinear.law_codes import (
+    COLUMN,
+    DONE,
+    LARGEST,
+    SPRING_ROWS,
+    VECTORS,
+    WHEEL_ROWS,
+    CodedSprings,
+    CodedWheels,
+)
 from axlespan.linalg.compiled import Loop
 
 FloatArray = npt.NDArray[np.float64]
@@ -72,6 +82,7 @@ class NonlinearMarch(FusedMarch):
             columns.there,
         )
         self._slowest, self._vehicles = np.zeros(LIMIT), self._vehicle_blocks()
+        self._work = _room(len(coupling.laws.rigid), field.n)
         self._follows = True  # whether the loop stands where the bodies stand, or is ahead of them
         columns.need(field.active)
 
@@ -192,6 +203,7 @@ class NonlinearMarch(FusedMarch):
             self._springs,
             (last, counts, history),
             (self._slowest, most),
+            self._work,
             first,
             stop,
         )
@@ -211,3 +223,12 @@ class NonlinearMarch(FusedMarch):
         structure, inner = self._convoy.structure, self._coupling.field.force()
         if inner is not None:
             structure.carry(structure.load_of(0) - inner)
+
+
+def _room(n_wheel: int, n_spring: int) -> tuple[Any, ...]:
+    """Arrays that the loop works in: of wheels, of springs, and of an interface."""
+    size = n_wheel + LARGEST
+    springs = (np.zeros(n_spring, dtype=bool), np.arange(n_spring), np.zeros((SPRING_ROWS, n_spring)))
+    names, vectors = np.zeros(size, dtype=np.int64), np.zeros((VECTORS, size))
+    interface = (np.zeros((size, size)), np.zeros((size, size)), names, vectors, np.zeros(LIMIT))
+    return np.zeros((WHEEL_ROWS, n_wheel)), springs, interface

@@ -25,7 +25,7 @@ from axlespan.linalg.compiled import as_compiled
 
 # Vectors to work in: forces, free and found coordinates, the Newton step and where it starts, rates of springs; twice
 # residual, slope, whether a constraint holds, and coordinate.
-FREE, FORCE, FOUND, STEP, START, RATE, BY_RATE, NOW, THEN, VECTORS = 0, 1, 2, 3, 4, 5, 6, 7, 11, 15
+FREE, FORCE, FOUND, STEP, START, RATE, BY_RATE, NOW, THEN = 0, 1, 2, 3, 4, 5, 6, 7, 11
 SLOPE, HELD, COORDINATE = 1, 2, 3
 
 _EXACT = 1e-14  # of the forces that make it up: a deviation below that is rounding

@@ -98,7 +98,10 @@ def solve_interface(
             break
         if size <= ROUNDING * interface.scale:
             return Solution(forces, newton.coordinates(forces), residuals)
-        step = np.asarray(np.linalg.solve(jacobian, residual[..., None])[..., 0], dtype=np.float64)
+        try:
+            step = np.asarray(np.linalg.solve(jacobian, residual[..., None])[..., 0], dtype=np.float64)
+        except np.linalg.LinAlgError:  # laws that fall as fast as the bodies give way
+            break
         before = residual
         forces, residual, jacobian, now = newton.advance(forces, step, residual)
         same = held is None or now is None or np.array_equal(held, now)

@@ -30,8 +30,10 @@ RIGID, ONE_SIDED, HERTZ, PUSHING, PULLING = range(5)
 
 #: Why a compiled loop returned: all steps are made; a step is not for it; the column of a spring is needed.
 DONE, UNUSUAL, COLUMN = range(3)
-#: Springs that may deviate at a time, in the compiled loop.
-LARGEST = 600
+#: Springs that may deviate at a time in the compiled loop: its elimination is quicker than calls of LAPACK up to there.
+LARGEST = 256
+#: Rows of the arrays that the loop works in: of wheels, of springs, and of the unknowns of an interface.
+WHEEL_ROWS, SPRING_ROWS, VECTORS = 3, 8, 15
 
 
 @dataclass(frozen=True, eq=False)

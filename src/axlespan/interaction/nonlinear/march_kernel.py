@@ -25,18 +25,24 @@ from axlespan.interaction.nonlinear.interface_kernel import (
     FORCE,
     FOUND,
     FREE,
-    VECTORS,
     deviations,
     solve_interface,
 )
-from axlespan.interaction.nonlinear.interface_solver import LIMIT
-from axlespan.interaction.nonlinear.law_codes import COLUMN, DONE, LARGEST, ONE_SIDED, UNUSUAL
+from axlespan.interaction.nonlinear.law_codes import (
+    COLUMN,
+    DONE,
+    LARGEST,
+    ONE_SIDED,
+    SPRING_ROWS,
+    UNUSUAL,
+    WHEEL_ROWS,
+)
 from axlespan.linalg.compiled import as_compiled
 
 # Rows of the springs' room: free elongation and rate, deviation, elongation and rate of the step, and three to work in.
-_E_FREE, _RATE_FREE, _Q, _E, _RATE, _SOON, _BY_E, _BY_RATE, _ROWS = range(9)
+_E_FREE, _RATE_FREE, _Q, _E, _RATE, _SOON, _BY_E, _BY_RATE = range(SPRING_ROWS)
 # Rows of the wheels' room: gap, forces of the step before, approaches.
-_GAP, _BEFORE, _APPROACH = range(3)
+_GAP, _BEFORE, _APPROACH = range(WHEEL_ROWS)
 
 
 @as_compiled
@@ -257,7 +263,7 @@ def _remember(made: int, forces: Any, wheels: Any, laws: Any, room: Any, memory:
 @as_compiled
 def march(
     lanes: Any, width: Any, numbers: Any, structure: Any, chunk: Any, rows: Any, known: Any, external: Any, fleet: Any,
-    system: Any, tape: Any, interface: Any, springs: Any, memory: Any, figures: Any, first: int, stop: int
+    system: Any, tape: Any, interface: Any, springs: Any, memory: Any, figures: Any, work: Any, first: int, stop: int
 ) -> Any:  # fmt: skip
     """Make steps ``first`` to ``stop`` of a stretch; the first step that was not made, why, and the spring that it needs."""
     p, late, wc, wp = numbers
@@ -271,12 +277,8 @@ def march(
     last, counts, history = memory
     shift, w, all_known = len(width), np.uint64(len(width)), np.arange(len(known_forces))
     u_from_a, rate_from_e = late[3], late[4] / late[3]
-    n_spring, size = last.shape[1], n_coupled + LARGEST
-    wheels = np.zeros((3, n_coupled))
-    room = (np.zeros(n_spring, np.bool_), np.arange(n_spring), np.zeros((_ROWS, n_spring)))
+    wheels, room, rooms = work
     active, values = room[0], room[2]
-    names, S, J = np.zeros(size, np.int64), np.zeros((size, size)), np.zeros((size, size))
-    rooms = (S, J, names, np.zeros((VECTORS, size)), np.zeros(LIMIT))
     laws = (wheel_laws, springs[0], (values, rate_from_e))
     for k in range(first, stop):
         if forced:

@@ -17,6 +17,10 @@ IntArray = npt.NDArray[np.int64]
 LEFT, RIGHT = "left", "right"
 TWIST_LENGTH = 3.0
 
+Rows = FloatArray | sp.csr_array
+# Up to this many entries a dense product is quicker than a sparse one.
+_DENSE_UP_TO = 20_000
+
 
 def twist_rows(structure: Structure, positions: FloatArray) -> sp.csr_array:
     """Rows (n_position, n) of the twist [m] over 3 m around positions; none without a left and a right line.
@@ -36,6 +40,10 @@ def twist_rows(structure: Structure, positions: FloatArray) -> sp.csr_array:
     return sp.csr_array(cross[1] - cross[0])
 
 
+def _operand(matrix: sp.csr_array) -> Rows:
+    return matrix.toarray() if matrix.shape[0] * matrix.shape[1] <= _DENSE_UP_TO else matrix
+
+
 class LineHistories:
     """Keeps the deck's vertical motion at ``plan.settings.line_points``.
 
@@ -45,7 +53,7 @@ class LineHistories:
     positions: FloatArray  # (n_point,) [m]
     ends: FloatArray  # (2,) [m]
     free_dofs: IntArray
-    _rows: tuple[sp.csr_array, sp.csr_array]  # of motion and of acceleration, over the free d.o.f.
+    _rows: tuple[Rows, Rows]  # of motion and of acceleration, over the free d.o.f.
     _moved: tuple[sp.csr_array, sp.csr_array]  # the same over the supports that move
 
     def __init__(self, plan: Plan, like: LineHistories | None = None) -> None:
@@ -72,7 +80,8 @@ class LineHistories:
         n = len(self.positions)
         compact = sp.csr_array(free[:, self.free_dofs])
         moved = sp.csr_array(both[:, system.prescribed[plan.moving]])
-        self._rows, self._moved = (compact, compact[:n]), (moved, moved[:n])
+        self._rows = _operand(compact), _operand(sp.csr_array(compact[:n]))
+        self._moved = moved, moved[:n]
 
     def look(self, steps: IntArray, near: FloatArray, positions: FloatArray, forces: FloatArray) -> None:
         """Look at consecutive steps: ``near`` (3, n_step, n_free) of ``free_dofs``."""
@@ -87,7 +96,8 @@ class LineHistories:
 
     def _values(self, which: int, name: str, steps: IntArray, near: FloatArray) -> FloatArray:
         """Values (n_row, n_step) of rows at consecutive or every n-th step."""
-        values = np.asarray(self._rows[which] @ near.T)
+        rows = self._rows[which]
+        values = (near @ rows.T).T if isinstance(rows, np.ndarray) else np.asarray(rows @ near.T)
         if len(self._plan.moving):
             times, motions = self._plan.times_of(steps), self._plan.crossing.structure.system.motions
             own = np.array([getattr(motions[j], name)(times) for j in self._plan.moving])

@@ -255,7 +255,7 @@ class TensionMonitor:
 
 
 class EnergyMonitor:
-    r"""Energy balance over single steps, sampled over the run.
+    r"""Energy balance over single steps, sampled over the run; less often where crossings go side by side.
 
     Over one step the kinetic and strain energy change by the work of the applied and contact forces, less
     what damping and the alpha method take. With the Newmark kinematics (N12 (16), (17)) the kinetic energy
@@ -267,7 +267,7 @@ class EnergyMonitor:
     work of forces out of balance; it should vanish to rounding.
     """
 
-    def __init__(self, plan: Plan, samples: Collection[int] | None = None) -> None:
+    def __init__(self, plan: Plan, samples: Collection[int] | None = None, *, alone: bool = True) -> None:
         self._plan = plan
         self.cut: Collection[int] = ()  # steps that were cut: others look at their parts
         self.restarted: Collection[int] = ()  # steps at which a wheel landed: they lose energy
@@ -276,7 +276,8 @@ class EnergyMonitor:
         self.inner_of_fleet: Callable[[], FloatArray | None] | None = None
         self._inner_before: FloatArray | None = None
         steps = plan.settings.steps
-        count = max(_FEWEST_SAMPLES, min(_ENERGY_SAMPLES, _SAMPLED_DOFS // plan.structure.size))
+        most = _ENERGY_SAMPLES if alone else _FEWEST_SAMPLES  # one of many is one of the same kind
+        count = max(_FEWEST_SAMPLES, min(most, _SAMPLED_DOFS // plan.structure.size))
         count = plan.settings.energy_samples or count
         spread = np.unique(np.linspace(1, steps, min(count, steps)).astype(int)).tolist()
         self._samples = set(spread if samples is None else samples)

@@ -96,8 +96,10 @@ class Tape:
         n = self.filled
         with np.errstate(all="ignore"):  # a sum is finite only if everything in it is
             parts = (self._near[:n], self._vehicles[:n], self._sums[:n])
-            finite = all(bool(np.isfinite(part.sum())) for part in parts)
-            return finite and bool(np.abs(self._forces[:n]).max(initial=0.0) < largest)
+            if not all(bool(np.isfinite(part.sum())) for part in parts if part.size):
+                return False
+            forces = self._forces[:n]
+            return bool(forces.max(initial=0.0) < largest and forces.min(initial=0.0) > -largest)
 
     def last_forces(self, contacts: slice) -> FloatArray:
         """Forces (n_contact,) of the last step."""

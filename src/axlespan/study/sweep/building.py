@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
 
+from axlespan.errors import InputError
 from axlespan.interaction.crossing import Crossing, Irregularity
 from axlespan.interaction.plan import Plan
 from axlespan.study.build import BuiltCase, Known, build
@@ -23,6 +24,7 @@ from axlespan.study.pointing import pointing
 from axlespan.study.sweep.kept import Kept
 from axlespan.study.sweep.passage import in_round_numbers, passage
 from axlespan.study.sweep.recipe import Recipe, digest
+from axlespan.study.sweep.spec import LASTING
 from axlespan.study.sweep.validation import case_of
 from axlespan.vehicles import Train
 
@@ -114,7 +116,14 @@ class Builder:
         after, dt = self.recipe.passage or 0.0, case.analysis.time_step
 
         def steps(crossing: Crossing) -> int:
-            return in_round_numbers(max(1, math.ceil((passage(crossing) + after) / dt * (1.0 - 1e-12))))
+            number = max(1, math.ceil((passage(crossing) + after) / dt * (1.0 - 1e-12)))
+            if number > LASTING:
+                rule = (
+                    f"is so low that {number:.3g} time steps pass before the last wheel leaves the structure"
+                )
+                fix = f"Use a higher speed or a longer time_step: at most {LASTING:.0e} steps are possible"
+                raise InputError(rule, field="crossing.speed", fix=fix)
+            return in_round_numbers(number)
 
         return steps
 

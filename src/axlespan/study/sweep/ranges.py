@@ -84,12 +84,19 @@ def values_of_range(node: Node) -> list[Any]:
         fix = "Keep one of the two" if "step" in parts else "Add step: 5 km/h, or count: 57"
         raise node.source.blame((*node.path, "count" if "step" in parts else "step"), rule, fix)
     first = amount(parts["from"])
+    if not first.unit and (unit := amount(parts["to"]).unit):
+        raise parts["from"].fault("has no unit, and to has one", f"Write {first.number:g} {unit}")
     last = alike(parts["to"], first)
     if "count" in parts:
         return _counted(parts["count"], first, last)
     step = alike(parts["step"], first)
-    if step.number == 0.0 or (last.number - first.number) * step.number < 0.0:
-        raise parts["step"].fault("never gets from the first value to the last", "Exchange from and to")
+    if step.number == 0.0:
+        raise parts["step"].fault(
+            "must not be zero", "Write how far values are apart, or count: 57 in its place"
+        )
+    if (last.number - first.number) * step.number < 0.0:
+        fix = "Exchange from and to" if step.number > 0.0 else f"Write {step.text(-step.decimal)}"
+        raise parts["step"].fault("never gets from the first value to the last", fix)
     # a tenth of a thousandth of a step forgives what rounding of units takes from the last value
     number = int((last.decimal - first.decimal) / step.decimal + Decimal("1e-4")) + 1
     if number > MOST:

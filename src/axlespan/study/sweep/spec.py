@@ -201,6 +201,7 @@ def _varied(
     if faults:
         raise InputErrors(faults)
     _require_apart(chosen)
+    _require_what_is_random(chosen, base)
     return chosen
 
 
@@ -212,6 +213,20 @@ def _require_apart(chosen: Sequence[Values | Chance]) -> None:
                 raise one.node.source.blame_key(
                     one.node.path, f"lies within {other.path}, which varies too", "Keep one of the two"
                 )
+
+
+def _require_what_is_random(chosen: Sequence[Values | Chance], base: Base) -> None:
+    """Require that the base has, or other paths make, what seeds belong to."""
+    for one in chosen:
+        whole = one.path.rpartition(".")[0]
+        if not whole or not isinstance(one, Values) or not isinstance(one.values, range):
+            continue
+        made = any(other is not one and other.path.startswith(f"{whole}.") for other in chosen)
+        if not made and found(base.data, whole) is None:
+            fix = "Add it to the base, such as {kind: spectrum, name: fra-6, seed: 1}"
+            raise one.node.source.blame_key(
+                one.node.path, f"needs {whole}, which the base does not have", fix
+            )
 
 
 def _zipped(node: Node | None, values: Sequence[Values]) -> list[Axis]:
