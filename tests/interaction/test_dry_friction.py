@@ -14,7 +14,7 @@ MASS, WHEEL, STIFF, DASH, SLIDE = 5750.0, 800.0, 1.595e6, 4e3, 2e4
 
 
 @pytest.mark.parametrize("width", [1e-3, 1e-6, 1e-9, 1e-12])
-@pytest.mark.parametrize("n", [1, 3, 12])
+@pytest.mark.parametrize("n", [1, 3, 12, 40])
 def test_saturated_rows_are_a_box_constrained_problem(n, width):
     """p = F0 clip(d / w) tends to the minimum of ½ pᵀ S p - pᵀ d* over |p| <= F0 as w falls."""
     rng = np.random.default_rng(n)
@@ -38,7 +38,7 @@ def test_saturated_rows_are_a_box_constrained_problem(n, width):
             tol=1e-14,
         ).x
         np.testing.assert_allclose(found.forces, exact, rtol=0.0, atol=1e-7)
-        assert len(found.residuals) <= 25
+        assert len(found.residuals) <= 5 + 2 * n
 
 
 @pytest.mark.parametrize("rigid", [1, 3])

@@ -35,7 +35,7 @@ DECK = asp.bridges.simple_span(
     length=20.0, youngs_modulus=3e10, second_moment=0.4, mass_per_length=9e3, elements=20
 )
 TRACK = asp.bridges.with_track(DECK, asp.bridges.ballasted_track(), approach=30.0, exit=30.0)
-HANGING = with_unilateral_springs(TRACK, "ballast", hanging=[(8.0, 1e-3), (8.6, 1e-3)])
+HANGING = with_unilateral_springs(TRACK, "ballast", hanging=[(-12.0, 1e-3), (-11.4, 1e-3)])
 UNIT = asp.vehicles.sprung_mass(mass=5750.0, stiffness=1.595e6, damping=20e3, unsprung_mass=800.0)
 MASSES = asp.Train.of(UNIT, count=3, spacing=6.0)
 MIXED = asp.Train(
@@ -55,8 +55,8 @@ BUMPS = asp.irregularity.Harmonic(amplitude=8e-3, wavelength=3.0)
 CASES = {
     # structure, train, irregularity, law, alpha, start, steps
     "rigid, hanging": (HANGING, MASSES, WAVES, "rigid", -0.1, -25.0, 600),
-    "hertz, hanging": (HANGING, MASSES, WAVES, "hertz", -0.1, 10.0, 300),
-    "axle loads, hanging": (HANGING, AXLES, None, "rigid", 0.0, -5.0, 500),
+    "hertz, hanging": (HANGING, MASSES, WAVES, "hertz", -0.1, -25.0, 600),
+    "axle loads, hanging": (HANGING, AXLES, None, "rigid", 0.0, -25.0, 600),
     "unilateral, hanging, bumps": (HANGING, MASSES, BUMPS, "unilateral", -0.1, -25.0, 400),
     "mixed, hanging": (HANGING, MIXED, WAVES, "rigid", -0.1, -25.0, 900),
     "hertz": (DECK, MASSES, WAVES, "hertz", -0.1, 0.0, 700),
@@ -94,7 +94,9 @@ def test_same_numbers(case, monkeypatch):
     for name in ("contact_force", "sensor_displacement", "vehicle_displacement", "vehicle_velocity"):
         one, two = getattr(own, name), getattr(other, name)
         if two.size:
-            np.testing.assert_allclose(one, two, rtol=0.0, atol=1e-10 * np.abs(two).max(), err_msg=name)
+            # The factor of stiff rails over soft ballast is less sure than that of a beam.
+            tolerance = 1e-9 if CASES[case][0] is HANGING and name.startswith("sensor") else 1e-10
+            np.testing.assert_allclose(one, two, rtol=0.0, atol=tolerance * np.abs(two).max(), err_msg=name)
     # Stiff supports carry what rounding leaves of accelerations.
     reaction = other.support_reaction
     np.testing.assert_allclose(own.support_reaction, reaction, rtol=0.0, atol=1e-8 * np.abs(reaction).max())

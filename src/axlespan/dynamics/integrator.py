@@ -387,8 +387,8 @@ def _operand(matrix: sp.csr_array) -> FloatArray | sp.csr_array:
 
 def _above_diagonal(matrix: sp.csr_array) -> sp.csr_array:
     rows = np.repeat(np.arange(matrix.shape[0], dtype=matrix.indices.dtype), np.diff(matrix.indptr))
-    above = matrix.indices > rows
-    ends = np.concatenate([[0], np.cumsum(above)])[matrix.indptr]
+    above = np.flatnonzero(matrix.indices > rows)
+    ends = np.searchsorted(above, matrix.indptr)
     return sp.csr_array((matrix.data[above], matrix.indices[above], ends), shape=matrix.shape)
 
 

@@ -154,14 +154,14 @@ class Convoy:
         counts = self.lanes[0].recorder.counts
         counts[what] = counts.get(what, 0) + number
 
-    def save(self, n_step: int, structure: Callable[[int], State]) -> None:
+    def save(self, n_step: int) -> None:
         """Put the states of the bodies back into the lanes that are not at their ends, after so many steps."""
         for i, lane in enumerate(self.lanes):
             own = min(n_step, lane.left)
             lane.done += own
             if own < n_step:
                 continue
-            lane.structure, lane.load = structure(i), self.structure.load_of(i)
+            lane.structure, lane.load = self.structure.lane(i), self.structure.load_of(i)
             lane.forces = self.tape.last_forces(self.contacts[i])
             if self.fleet is not None:
                 lane.fleet = State(self.fleet.state.values[:, self.vehicle_dofs[i]].copy())
@@ -245,7 +245,7 @@ def _drive(
                 if own := min(stretch.n_step, lane.left):
                     tape, positions = convoy.tape_of(i).upto(own), stretch.crossings[i].positions[:own]
                     lane.recorder.work_up(stretch.steps[:own], positions, tape)
-            convoy.save(stretch.n_step, convoy.structure.lane if leap is None else leap.state_of)
+            convoy.save(stretch.n_step)
             staying = convoy.lanes
         staying = [lane for lane in staying if lane.left]
         if not staying:
@@ -279,12 +279,13 @@ def _make(
             who = (
                 [i for i, one in enumerate(watching) if one.looks_at(stretch.first + k)] if k in looks else []
             )
+            whole = True
             if leap is not None:
-                whole = k == stretch.n_step - 1 or len(watching) == 1
+                whole = len(watching) == 1 or k == stretch.n_step - 1
                 leap.show(stretch, k, range(len(watching)) if whole else [])
-            state_of = convoy.structure.full if leap is None else leap.state_of
             for i in who:
-                watching[i].look(stretch.first + k, *convoy.moment(i, state_of(i)))
+                state = convoy.structure.full(i) if leap is None or whole else leap.state_of(i)
+                watching[i].look(stretch.first + k, *convoy.moment(i, state))
     own = {i: min(convoy.tape.filled, lane.left) for i, lane in enumerate(convoy.lanes) if lane.left}
     found: dict[int, tuple[int, str | None]] = {}
     if not convoy.tape.is_good(min(lane.recorder.largest_force for lane in convoy.lanes)):

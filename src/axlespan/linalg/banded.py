@@ -8,7 +8,7 @@ from typing import NoReturn
 
 import numpy as np
 from scipy.linalg.lapack import dpbtrf, dpbtrs, dtbtrs
-from scipy.sparse.csgraph import connected_components, reverse_cuthill_mckee
+from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from axlespan.linalg.arrays import CsrMatrix, FloatArray, IntArray, right_hand_side, row_indices
 from axlespan.linalg.band_blocks import NARROWEST, BandBlocks
@@ -51,14 +51,13 @@ class BandOrder:
         They are the given one; the given one part by part, where no entry connects parts with one another, as those of
         each direction in a mass matrix; and the reverse Cuthill-McKee order.
         """
+        reordered = np.asarray(reverse_cuthill_mckee(matrix, symmetric_mode=True), dtype=np.intp)
+        narrow, part = _reach(matrix, reordered)
         orders: list[tuple[int, IntArray | None]] = [(_spread(matrix, None), None)]
-        n_part, part = connected_components(matrix, directed=False)
-        if 1 < n_part <= _PARTS:
+        if 0 < part.max(initial=0) < _PARTS:
             by_part = np.argsort(part, kind="stable").astype(np.intp)
             orders.append((_spread(matrix, by_part), by_part))
-        reordered = np.asarray(reverse_cuthill_mckee(matrix, symmetric_mode=True), dtype=np.intp)
-        orders.append((_spread(matrix, reordered), reordered))
-        return cls(*min(orders, key=itemgetter(0)))
+        return cls(*min([*orders, (narrow, reordered)], key=itemgetter(0)))
 
     def on(self, matrix: CsrMatrix) -> BandOrder:
         """The same order for another matrix."""
@@ -200,12 +199,28 @@ class BandedFactor:
 
 def _spread(matrix: CsrMatrix, rows: IntArray | None) -> int:
     """Largest distance between row and column of an entry in an order of elimination; the matrix is symmetric."""
-    n, filled = matrix.shape[0], np.flatnonzero(np.diff(matrix.indptr))
+    filled = np.flatnonzero(np.diff(matrix.indptr))
     if not len(filled):
         return 0
-    rank = np.arange(n, dtype=np.int32) if rows is None else _inverse(rows).astype(np.int32)
-    first = np.minimum.reduceat(rank[matrix.indices], matrix.indptr[filled])
-    return max(int((rank[filled] - first).max()), 0)
+    begins = matrix.indptr[filled]
+    if rows is None:  # columns are sorted
+        return max(int((filled - matrix.indices[begins]).max()), 0)
+    rank = _inverse(rows).astype(np.int32)
+    return max(int((rank[filled] - np.minimum.reduceat(rank[matrix.indices], begins)).max()), 0)
+
+
+def _reach(matrix: CsrMatrix, rows: IntArray) -> tuple[int, IntArray]:
+    """The same for reverse Cuthill-McKee's order, with the part (n,) of each row: one after the other in this order."""
+    n, filled = matrix.shape[0], np.flatnonzero(np.diff(matrix.indptr))
+    rank = _inverse(rows).astype(np.int32)
+    last = np.arange(n, dtype=np.int32)  # in the order of elimination, the farthest row that each is connected with
+    if len(filled):
+        own = rank[filled]
+        last[own] = np.maximum(own, np.maximum.reduceat(rank[matrix.indices], matrix.indptr[filled]))
+    ends = np.maximum.accumulate(last) == np.arange(n)
+    part = np.empty(n, dtype=np.intp)
+    part[rows] = np.cumsum(ends) - ends
+    return int((last - np.arange(n)).max(initial=0)), part
 
 
 def _inverse(rows: IntArray) -> IntArray:

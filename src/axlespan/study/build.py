@@ -37,6 +37,7 @@ class BuiltCase:
     plan: Plan
     warnings: tuple[str, ...]
     facts: tuple[str, ...] = ()  # of an imported structure: what it was read as
+    of_trains: tuple[str, ...] = ()  # those of the warnings that are about its trains
 
     @property
     def title(self) -> str:
@@ -52,10 +53,11 @@ class BuiltCase:
 
 @dataclass(frozen=True, eq=False)
 class Known:
-    """Parts of a case that have been built before, as in a sweep; warnings about them have been told then."""
+    """Parts of a case that have been built before, as in a sweep."""
 
     made: BuiltStructure | None = None
     trains: Sequence[Train] | None = None  # the first one, and the others of the case
+    of_trains: tuple[str, ...] = ()  # warnings about them
     surfaces: Sequence[Irregularity | None] | None = None  # of the crossing, and of the other trains
     like: Plan | None = None  # of another case: what holds here too is shared with it
 
@@ -99,9 +101,10 @@ def build(
         settings = settings_for(crossing, method=method, **options)
         plan = plan_for(crossing, settings, known.like)
     warnings = (*loaded.warnings, *(f"{loaded.source.file}: structure: {word}" for word in made.warnings))
+    of_trains = known.of_trains
     if known.trains is None:
-        warnings = (*warnings, *overlaps(trains[0], loaded.source), *stated_otherwise(loaded))
-    return BuiltCase(loaded, crossing, plan, warnings, made.facts)
+        of_trains = (*overlaps(trains[0], loaded.source), *stated_otherwise(loaded))
+    return BuiltCase(loaded, crossing, plan, (*warnings, *of_trains), made.facts, of_trains)
 
 
 # --- crossing and analysis ---------------------------------------------------------------------------

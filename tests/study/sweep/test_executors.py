@@ -88,7 +88,7 @@ def test_a_structure_is_built_once_and_kept(study, monkeypatch):
     built = []
     make = building.structure_of
     monkeypatch.setattr(building, "structure_of", lambda case: built.append(case) or make(case))
-    workshop._WORKSHOPS.clear()
+    workshop.forget()
     list(InProcess().run(work(study, 3)))
     assert [case.second_moment for case in built] == pytest.approx([0.09, 0.11])
 
@@ -130,13 +130,13 @@ def test_a_structure_is_factored_once_for_all_its_tasks(study_file, monkeypatch,
     monkeypatch.setattr(
         Groundwork, "of", classmethod(lambda cls, plans: laid.append(plans) or make(cls, plans))
     )
-    workshop._WORKSHOPS.clear()
+    workshop.forget()
     together = rows(InProcess().run(work(study, 3)))
     assert len(laid) == 2  # structures; the tasks are eight
     monkeypatch.undo()
     apart = []
     for task in work(study, 3):
-        workshop._WORKSHOPS.clear()
+        workshop.forget()
         apart += InProcess().run([task])
     assert numbers_differ(rows(apart), together) < EQUAL
 
@@ -146,7 +146,7 @@ def test_factors_of_other_time_steps_and_methods_are_not_mixed(study_file):
         "vary:\n", "vary:\n  analysis.alpha: [-0.1, -0.2]\n  analysis.time_step: [4 ms, 3 ms]\n"
     )
     study = Study.load(study_file(text))
-    workshop._WORKSHOPS.clear()
+    workshop.forget()
     kept = rows(InProcess().run(work(study, 128)))
     for number in (0, 10, len(study.scenarios) - 1):
         alone = study.scenario(number).run()

@@ -85,13 +85,13 @@ def solve_interface(
     Raises
     ------
     NotConverged
-        After 60 iterations.
+        After 60 iterations, or three for each row: laws that jump change sides one by one.
     """
     newton = _Newton(system, free, interface)
     forces, residuals = guess.copy(), []
     residual, jacobian, held = newton.at(forces)
     before = residual
-    for _ in range(LIMIT):
+    for _ in range(max(LIMIT, 3 * free.shape[-1])):
         size = float(np.abs(residual).max(initial=0.0))
         residuals.append(size / interface.scale)
         if not np.isfinite(size):

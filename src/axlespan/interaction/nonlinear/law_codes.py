@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from axlespan.contact.laws import Hertz, LinearSpring
 from axlespan.contact.laws_of_wheels import WheelLaws
-from axlespan.interaction.nonlinear.springs import Springs
 from axlespan.model.nonlinear import (
     MultilinearDashpot,
     MultilinearSpring,
@@ -19,6 +19,9 @@ from axlespan.model.nonlinear import (
     SpringLaw,
     UnilateralSpring,
 )
+
+if TYPE_CHECKING:
+    from axlespan.interaction.nonlinear.springs import Springs
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

@@ -16,10 +16,12 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+import scipy.sparse as sp
 
 from axlespan.interaction.bodies import FleetBody, StructureBody
 from axlespan.interaction.nonlinear.spring_columns import SpringColumns
 from axlespan.interaction.nonlinear.springs import Springs
+from axlespan.linalg.products import Product
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -45,7 +47,9 @@ class SpringField:
         self._dofs, self._dofs_fleet = (
             np.unique(part.rows.indices).astype(np.int64) for part in (own, fleet)
         )
-        self._local, self._local_fleet = own.rows[:, self._dofs], fleet.rows[:, self._dofs_fleet]
+        self._local = Product(own.rows[:, self._dofs])
+        self._local_fleet = Product(fleet.rows[:, self._dofs_fleet])
+        self._onto = Product(sp.csr_array(own.rows.T))
         self.q = np.concatenate([deviation, np.zeros(fleet.n)])
         self.e, self.rate = np.zeros(self.n), np.zeros(self.n)
         self.e_free, self.rate_free = np.zeros(self.n), np.zeros(self.n)
@@ -115,10 +119,8 @@ class SpringField:
         bodies = [(structure.stepper, self._dofs, self._local)]
         if fleet is not None:
             bodies.append((fleet.stepper, self._dofs_fleet, self._local_fleet))
-        self.e_free = np.concatenate(
-            [np.asarray(local @ body.displacement(at)) for body, at, local in bodies]
-        )
-        self.rate_free = np.concatenate([np.asarray(local @ body.velocity(at)) for body, at, local in bodies])
+        self.e_free = np.concatenate([local.of(body.displacement(at)) for body, at, local in bodies])
+        self.rate_free = np.concatenate([local.of(body.velocity(at)) for body, at, local in bodies])
         ahead = self.springs.deviation(self.e + self._time_step * self.rate, self.rate)
         self._guess = np.where(np.isfinite(ahead), ahead, self.q)  # an element may not reach so far
         self._take_in(self._guess != 0.0)
@@ -168,12 +170,8 @@ class SpringField:
     def evaluate(self, e: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Deviations of the active springs at their elongations, and their derivatives: (n,), or (n, n) with elements."""
         a = self.active
-        whole = self.e_free.copy()
-        whole[a] = e
-        rate = self.rate_free + self._rate_from_e * (whole - self.e_free)
-        k, c = self.springs.tangent(whole, rate)
-        slope = self.springs.with_blocks(k + self._rate_from_e * c, whole, rate, self._rate_from_e)
-        return self.springs.deviation(whole, rate)[a], slope[a] if slope.ndim == 1 else slope[np.ix_(a, a)]
+        rate = self.rate_free[a] + self._rate_from_e * (e - self.e_free[a])
+        return self.springs.linearized(a, e, rate, self._rate_from_e)
 
     def _active(self) -> IntArray:
         """Springs that deviate, and all that are d.o.f. of elements."""
@@ -194,7 +192,7 @@ class SpringField:
         self._respond(structure, forces, q[: self.n_own])
         if self._response is not None:
             moved = structure.integrator.u_from_a * self._response[self._dofs]
-            e[: self.n_own] += np.asarray(self._local @ moved)
+            e[: self.n_own] += self._local.of(moved)
         if self._of_fleet is not None:
             own = slice(self.n_own, None)
             e[own] -= self._of_fleet @ q[own]
@@ -216,7 +214,7 @@ class SpringField:
         self._response = None
         if not self.n_own:
             return
-        total = np.asarray(self._rows.T @ inner)
+        total = self._onto.of(inner)
         if len(self._at):
             loads = self._weights * forces[self._at][:, None]
             there = self._weights != 0.0

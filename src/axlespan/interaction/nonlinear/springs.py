@@ -12,7 +12,7 @@ unknowns of a step.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
@@ -20,8 +20,10 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from axlespan.errors import InputError
+from axlespan.interaction.nonlinear.law_codes import CodedSprings
 from axlespan.interaction.nonlinear.static_columns import StaticColumns
 from axlespan.interaction.plan import Plan
+from axlespan.linalg.compiled import Loop, numba_is_there
 from axlespan.linalg.factor import Factor
 from axlespan.model.motions import Constant
 from axlespan.model.nonlinear_elements import ElementLaw
@@ -146,8 +148,16 @@ class Springs:
         """Total forces (n,) [N], own weight included."""
         return self._forces(e, rate)
 
+    @cached_property
+    def _coded(self) -> CodedSprings | None:
+        """The laws as numbers, where all can be and loops are compiled."""
+        return CodedSprings.of(self) if numba_is_there() else None
+
     def deviation(self, e: FloatArray, rate: FloatArray) -> FloatArray:
         """Q (n,) [N]; exactly zero, without the rounding, where the law follows its reference."""
+        if self._coded is not None:
+            q: FloatArray = _evaluated(self._coded, np.arange(self.n), e, rate)[0]
+            return q
         result = self._forces(e, rate) - self.held
         linear, damped = self.stiffness * e, self.damping * rate
         result -= linear + damped
@@ -161,6 +171,23 @@ class Springs:
         for group, state, at in zip(self.groups, self.state, self.slices, strict=True):
             k[at], c[at] = group.law.tangent(total[at], rate[at], state)
         return k - self.stiffness, c - self.damping
+
+    def linearized(
+        self, chosen: IntArray, e: FloatArray, rate: FloatArray, per_rate: float
+    ) -> tuple[FloatArray, FloatArray]:
+        """Q (m,) of some springs and its derivative, (m,), or (m, m) where there are elements; all of these are chosen.
+
+        ``per_rate`` is the derivative of rates to elongations.
+        """
+        if self._coded is not None:
+            q, k, c = _evaluated(self._coded, chosen, e, rate)
+            return q, k + per_rate * c
+        all_e, all_rates = np.zeros(self.n), np.zeros(self.n)
+        all_e[chosen], all_rates[chosen] = e, rate
+        k, c = self.tangent(all_e, all_rates)
+        slope = self.with_blocks(k + per_rate * c, all_e, all_rates, per_rate)
+        slope = slope[chosen] if slope.ndim == 1 else slope[np.ix_(chosen, chosen)]
+        return self.deviation(all_e, all_rates)[chosen], slope
 
     def static_deviation(self, e: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Q and its derivative at rest, (n,) or (n, n) where there are elements."""
@@ -266,6 +293,20 @@ class Springs:
             value=f"spring {worst}",
             fix="Check gaps and laws: is the structure held when springs part?",
         )
+
+
+@cache
+def _deviations() -> Loop:
+    from axlespan.interaction.nonlinear.interface_kernel import deviations  # numba is an optional part
+
+    return deviations
+
+
+def _evaluated(coded: CodedSprings, chosen: IntArray, e: FloatArray, rate: FloatArray) -> FloatArray:
+    """Deviations of some springs and their derivatives to elongation and rate (3, m)."""
+    result = np.empty((3, len(chosen)))
+    _deviations()(chosen, 0, len(chosen), e, rate, (coded.kinds, coded.numbers, coded.points), *result)
+    return result
 
 
 def slope_times(slope: FloatArray, matrix: FloatArray) -> FloatArray:

@@ -61,7 +61,7 @@ class Builder:
         self.recipe = recipe
         self._parts: Kept[Any] = Kept(_PARTS)
         self._sites: Kept[_Site] = Kept(_STRUCTURES)
-        self._trains: Kept[Sequence[Train]] = Kept(_TRAINS)
+        self._trains: Kept[tuple[Sequence[Train], tuple[str, ...]]] = Kept(_TRAINS)  # and warnings about them
         self._surfaces: Kept[Sequence[Irregularity | None]] = Kept(_SURFACES)
         self._latest: Plan | None = None
 
@@ -83,14 +83,14 @@ class Builder:
         surfaces = self._surfaces_key(data, keys)
         known = Known(
             site.made,
-            self._trains.values.get(trains),
+            *self._trains.values.get(trains, (None, ())),
             self._surfaces.values.get(surfaces),
             site.like(trains) or self._latest,
         )
         lasting = None if self.recipe.passage is None else self._steps(case)
         built = build(loaded, known, lasting=lasting)
         crossing, others = built.crossing, built.crossing.others
-        self._trains.put(trains, (crossing.train, *(other.train for other in others)))
+        self._trains.put(trains, ((crossing.train, *(other.train for other in others)), built.of_trains))
         self._surfaces.put(surfaces, (crossing.irregularity, *(other.irregularity for other in others)))
         settings = replace(built.plan.settings, energy_samples=_ENERGY_SAMPLES)
         built = replace(built, plan=replace(built.plan, settings=settings))

@@ -21,7 +21,7 @@ from axlespan.study.sweep.peaks import has_passed
 from axlespan.study.sweep.planning import MOST_LANES, count_factorizations, count_tasks, lanes_for
 from axlespan.study.sweep.recipe import Recipe
 from axlespan.study.sweep.scenarios import Scenarios
-from axlespan.study.sweep.workshop import Workshop, together
+from axlespan.study.sweep.workshop import Workshop, together, workshop_of
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -93,7 +93,7 @@ def try_out(
     InputError
         If one of them cannot be built, or none.
     """
-    workshop = Workshop(recipe)
+    workshop = workshop_of(recipe)
     ids = np.unique(np.linspace(0, len(scenarios) - 1, _BUILT).astype(np.int64)).tolist()
     built: list[BuiltCase] = []
     faults: list[InputError] = []
@@ -107,8 +107,8 @@ def try_out(
             faults.append(located(error, number))
     if faults and not (forgiving and built):
         raise InputErrors(faults[:1] if built else faults)
-    again = _time_of(partial(workshop.build, good))
-    afresh = _time_of(partial(Workshop(recipe).build, good))
+    again = _time_of(partial(workshop.build, good)) if timed else 0.0
+    afresh = _time_of(partial(Workshop(recipe).build, good)) if timed else 0.0
     plans = [one.plan for one in built]
     alone, beside, start, first = _timed(plans) if timed else (0.0, 0.0, 0.0, 0.0)
     notes = dict.fromkeys(text for one in built for text in one.cautions)

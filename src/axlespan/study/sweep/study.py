@@ -34,7 +34,7 @@ from axlespan.study.sweep.scenarios import Scenarios
 from axlespan.study.sweep.spec import Spec, load_spec, read_spec
 from axlespan.study.sweep.store import Header, Store
 from axlespan.study.sweep.validation import MOST, blamed, case_of, validate
-from axlespan.study.sweep.workshop import Done, Workshop
+from axlespan.study.sweep.workshop import Done, workshop_of
 from axlespan.study.yaml_tree import read_yaml
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ class Scenario:
     @cached_property
     def built(self) -> BuiltCase:
         """Its case with structure, train and plan."""
-        return Workshop(self.study._recipe).build(self.study._scenarios.values([self.id])[0])
+        return workshop_of(self.study._recipe).build(self.study._scenarios.values([self.id])[0])
 
     @property
     def provenance(self) -> str:

@@ -250,12 +250,22 @@ def _words(error: BaseException) -> str:
 _WORKSHOPS: OrderedDict[str, Workshop] = OrderedDict()
 
 
-def run_task(task: Task, tell: Tell | None = None) -> Done:
-    """Compute a task in this process, which keeps what it builds for the next one; see :meth:`Workshop.run`."""
-    key = digest([task.recipe.data, task.recipe.paths, task.recipe.folder, repr(task.recipe.kept)])
-    key += repr((task.recipe.recording, task.recipe.passage, task.recipe.version, task.recipe.source.file))
+def workshop_of(recipe: Recipe) -> Workshop:
+    """The workshop of a recipe in this process, which keeps what it builds."""
+    key = digest([recipe.data, recipe.paths, recipe.folder, repr(recipe.kept)])
+    key += repr((recipe.recording, recipe.passage, recipe.version, recipe.source.file))
     if key not in _WORKSHOPS:
         while len(_WORKSHOPS) >= 2:
             _WORKSHOPS.popitem(last=False)
-        _WORKSHOPS[key] = Workshop(task.recipe)
-    return _WORKSHOPS[key].run(task, tell)
+        _WORKSHOPS[key] = Workshop(recipe)
+    return _WORKSHOPS[key]
+
+
+def forget() -> None:
+    """Let go of all that workshops of this process keep."""
+    _WORKSHOPS.clear()
+
+
+def run_task(task: Task, tell: Tell | None = None) -> Done:
+    """Compute a task in this process; see :meth:`Workshop.run`."""
+    return workshop_of(task.recipe).run(task, tell)
