@@ -186,3 +186,52 @@ def test_no_convergence_is_an_outcome_with_step_dof_and_remedy():
 def test_wrong_elements(dofs, words):
     with pytest.raises(InputError, match=words):
         with_nonlinear_element(bridge(), Cubic(), dofs)
+
+
+class Ends(Cubic):
+    """An element with a mistake that shows after some steps."""
+
+    steps = 0
+
+    def advanced(self, u, v, state):
+        self.steps += 1
+        return [0.0, 1.0][self.steps // 40]
+
+
+def test_an_error_in_an_element_ends_the_run_and_keeps_its_history():
+    car = asp.vehicles.sprung_mass(mass=5750.0, stiffness=1.595e6, unsprung_mass=800.0)
+    wrong = with_nonlinear_element(car, Ends(), ["body.z", "wheel1.z"])
+    crossing = asp.Crossing(bridge(), asp.Train.of(wrong), speed=40.0)
+    words = r"^element Ends fails in advanced: IndexError: list index out of range \(test_nonlinear_elements\.py, line \d+\)$"
+    with pytest.raises(AnalysisError, match=words) as caught:
+        asp.simulate(crossing, time_step=DT, steps=300)
+    assert len(caught.value.result.time) == 80
+
+
+class Stay:
+    """A cable to the ground beside the bridge, which pulls up only."""
+
+    def force(self, u, v, state):
+        return np.minimum(2e7 * u, 0.0)
+
+    def tangent(self, u, v, state):
+        return np.diag(np.where(u < 0.0, 2e7, 0.0)), np.zeros((1, 1))
+
+    def advanced(self, u, v, state):
+        return None
+
+
+@pytest.mark.parametrize("alpha", [0.0, -0.1])
+def test_an_element_may_stand_on_the_ground_beside_the_structure(alpha):
+    """Supports and the cable carry the load together: a slow force is shared as statics has it."""
+    train = asp.Train.of(asp.vehicles.axle_loads(loads=1e5))
+    crossing = asp.Crossing(with_nonlinear_element(bridge(), Stay(), ["n5.z"]), train, speed=0.5)
+    result = asp.simulate(crossing, time_step=0.05, steps=1000, method=asp.Alpha(alpha), sensors={"m": 12.5})
+    assert result.checks["equilibrium_residual"] < 1e-11
+    pulls = -2e7 * result.sensor_displacement[:, 0]
+    total = result.support_reaction.sum(axis=1) + pulls
+    on = (result.contact_position[:, 0] > 0.5) & (result.contact_position[:, 0] < 24.5)
+    np.testing.assert_allclose(total[on], 1e5, rtol=0.01)
+    k = int(np.argmin(np.abs(result.contact_position[:, 0] - 12.5)))
+    beam = 48.0 * 2.87e9 * 2.90 / LENGTH**3
+    assert pulls[k] == pytest.approx(1e5 * 2e7 / (2e7 + beam), rel=0.01)

@@ -1,5 +1,6 @@
 """Starts of many crossings at once: the equations that each must satisfy, the numbers of each alone, and memory."""
 
+import pickle
 import tracemalloc
 
 import numpy as np
@@ -12,7 +13,7 @@ from axlespan.interaction.crossing import Crossing
 from axlespan.interaction.line_responses import LineResponses, side_by_side
 from axlespan.interaction.plan import plan_for
 from axlespan.interaction.settings import settings_for
-from axlespan.interaction.start import condensed_stiffness, rows_at, start_of, starts_of
+from axlespan.interaction.start import StartFactors, condensed_stiffness, rows_at, start_of, starts_of
 from axlespan.irregularity import Harmonic
 from axlespan.linalg.factor import factorize
 from axlespan.model.damping import Rayleigh
@@ -130,6 +131,27 @@ def test_responses_to_loads_on_lines(dense, kept, wheels, monkeypatch):
     loads = [rng.standard_normal(n) for _ in range(10)]
     for load, solved in zip(loads, side_by_side(factor, loads), strict=True):
         np.testing.assert_allclose(solved, np.linalg.solve(A.toarray(), load), rtol=0.0, atol=1e-13)
+
+
+def test_the_factor_that_the_check_leaves_over(monkeypatch):
+    """It solves with K, does not travel with the structure, and is not kept where it is large."""
+    span = simple_span(elements=8, **SPAN)
+    crossing = Crossing(span, Train.of(MASS, 4, 3.1), speed=20.0, start=15.0)
+    plan = plan_of(crossing)
+    known = span.stiffness_factor
+    assert known is not None
+    assert StartFactors(plan).stiffness is known
+    K = span.system.partition.K_FF
+    load = np.arange(1.0, K.shape[0] + 1.0)
+    np.testing.assert_allclose(K @ known.solve(load), load, rtol=1e-9)
+    other = pickle.loads(pickle.dumps(span))
+    assert "_checked" not in vars(other)
+    assert other.stiffness_factor is not known
+    monkeypatch.setattr("axlespan.running.structure._KEPT", 0.0)
+    bare = simple_span(elements=8, **SPAN)
+    again = plan_of(Crossing(bare, Train.of(MASS, 4, 3.1), speed=20.0, start=15.0))
+    assert bare.stiffness_factor is None
+    np.testing.assert_allclose(start_of(again).structure.u, start_of(plan).structure.u, rtol=0.0, atol=1e-16)
 
 
 def test_condensed_stiffness_is_the_schur_complement():

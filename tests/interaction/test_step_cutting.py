@@ -347,7 +347,7 @@ def test_a_compiled_loop_goes_on_after_a_cut(stubborn):
     crossing = asp.Crossing(bridge(), asp.Train.of(CAR, 2, 4.0), speed=60.0, irregularity=waves(8e-3, 3.0))
     options = {"contact": "unilateral", "method": asp.Alpha(-0.1), "sensors": {"m": 12.5}}
     result = asp.simulate(crossing, time_step=5e-4, steps=600, **options)
-    assert result.facts["cut_steps"] > 100
+    assert result.facts["cut_steps"] > 10
     assert result.checks["flight_count"] > 5
     for check in ("equilibrium_residual", "energy_residual", "compatibility_residual"):
         assert result.checks[check] < 1e-11, check

@@ -25,9 +25,9 @@ from axlespan.dynamics.step_kernel import compiled_completion, compiled_reading,
 from axlespan.linalg.compiled import Loop
 from axlespan.linalg.factor import Factor, factorize
 from axlespan.linalg.low_rank import LowRank, UpdatedFactor
+from axlespan.linalg.products import Parts, half_of, whole_of
 
 FloatArray = npt.NDArray[np.float64]
-IndexArray = npt.NDArray[np.uint32]
 
 # Below this size a dense product is quicker than a sparse one.
 _DENSE_UP_TO = 200
@@ -160,18 +160,14 @@ class Integrator:
         return self.matrices.size
 
     @cached_property
-    def halves(self) -> list[tuple[IndexArray | FloatArray, ...]]:
+    def halves(self) -> list[Parts]:
         """K and C as the loop for one body wants them: the diagonal, and row starts, columns, entries above it."""
-        parts: list[tuple[IndexArray | FloatArray, ...]] = []
-        for matrix in (self.matrices.K, self.matrices.C):
-            diagonal = np.zeros(self.size) if matrix is None else matrix.diagonal()
-            parts.append((diagonal, *_parts(None if matrix is None else _above_diagonal(matrix), self.size)))
-        return parts
+        return [half_of(self.matrices.K, self.size), half_of(self.matrices.C, self.size)]
 
     @cached_property
-    def wholes(self) -> list[tuple[IndexArray | FloatArray, ...]]:
+    def wholes(self) -> list[Parts]:
         """K and C as the loop for many bodies wants them: row starts, columns, entries."""
-        return [_parts(self.matrices.K, self.size), _parts(self.matrices.C, self.size)]
+        return [whole_of(self.matrices.K, self.size), whole_of(self.matrices.C, self.size)]
 
     def _effective_matrix(self) -> sp.csr_array:
         m = self.matrices
@@ -383,17 +379,3 @@ def _product(matrix: FloatArray | sp.csr_array, x: FloatArray, out: FloatArray) 
 
 def _operand(matrix: sp.csr_array) -> FloatArray | sp.csr_array:
     return np.ascontiguousarray(matrix.toarray()) if matrix.shape[0] <= _DENSE_UP_TO else matrix
-
-
-def _above_diagonal(matrix: sp.csr_array) -> sp.csr_array:
-    rows = np.repeat(np.arange(matrix.shape[0], dtype=matrix.indices.dtype), np.diff(matrix.indptr))
-    above = np.flatnonzero(matrix.indices > rows)
-    ends = np.searchsorted(above, matrix.indptr)
-    return sp.csr_array((matrix.data[above], matrix.indices[above], ends), shape=matrix.shape)
-
-
-def _parts(matrix: sp.csr_array | None, n: int) -> tuple[IndexArray, IndexArray, FloatArray]:
-    """Row starts, columns and entries; of an empty matrix (n, n) for None. Unsigned: see the band kernel."""
-    if matrix is None:
-        return np.zeros(n + 1, dtype=np.uint32), np.zeros(0, dtype=np.uint32), np.zeros(0)
-    return matrix.indptr.astype(np.uint32), matrix.indices.astype(np.uint32), matrix.data

@@ -140,13 +140,22 @@ class Convoy:
         vehicles = State(self.fleet.state.values[:, self.vehicle_dofs[lane]])
         return structure, vehicles, load, self.fleet.forces[self.coupled[lane]]
 
-    def contact_at(self, stretch: Stretch, k: int) -> tuple[FloatArray, FloatArray]:
-        """Displacements of all wheels and of the line under them (n_coupled,), after step k."""
+    def contact_at(
+        self, stretch: Stretch, k: int, states: Sequence[State] | None
+    ) -> tuple[FloatArray, FloatArray]:
+        """Displacements of all wheels and of the line under them (n_coupled,), after step k.
+
+        ``states`` are those of the structure in all lanes, where the bodies do not hold them.
+        """
         assert self.fleet is not None
         line = stretch.gap[k].copy()
-        if len(stretch.into):
-            rows = stretch.rows(True, slice(k, k + 1))
-            line[stretch.into] += self.structure.gather(rows.flat[0], rows.held[0], rows.weights[0])
+        if states is not None:
+            for rows, state, own in zip(stretch.crossings, states, self.coupled, strict=True):
+                on = rows.active
+                line[own][rows.rank[on]] += (state.u[rows.dofs[k, on]] * rows.weights[k, on]).sum(axis=1)
+        elif len(stretch.into):
+            rows_at = stretch.rows(True, slice(k, k + 1))
+            line[stretch.into] += self.structure.gather(rows_at.flat[0], rows_at.held[0], rows_at.weights[0])
         return self.fleet.at_wheels(), line
 
     def count(self, what: str, number: int) -> None:
@@ -154,14 +163,14 @@ class Convoy:
         counts = self.lanes[0].recorder.counts
         counts[what] = counts.get(what, 0) + number
 
-    def save(self, n_step: int) -> None:
+    def save(self, n_step: int, states: Sequence[State]) -> None:
         """Put the states of the bodies back into the lanes that are not at their ends, after so many steps."""
         for i, lane in enumerate(self.lanes):
             own = min(n_step, lane.left)
             lane.done += own
             if own < n_step:
                 continue
-            lane.structure, lane.load = self.structure.lane(i), self.structure.load_of(i)
+            lane.structure, lane.load = states[i], self.structure.load_of(i)
             lane.forces = self.tape.last_forces(self.contacts[i])
             if self.fleet is not None:
                 lane.fleet = State(self.fleet.state.values[:, self.vehicle_dofs[i]].copy())
@@ -237,7 +246,7 @@ def _drive(
     while True:
         with_systems = systems and (leap is None or leap.needs_systems)
         stretch = convoy.stretch(systems=with_systems, idle=leap is not None)
-        failed = _make(convoy, stretch, couple, leap)
+        failed, states = _make(convoy, stretch, couple, leap)
         if failed:
             staying = _without(convoy, failed)
         else:
@@ -245,7 +254,9 @@ def _drive(
                 if own := min(stretch.n_step, lane.left):
                     tape, positions = convoy.tape_of(i).upto(own), stretch.crossings[i].positions[:own]
                     lane.recorder.work_up(stretch.steps[:own], positions, tape)
-            convoy.save(stretch.n_step)
+            convoy.save(
+                stretch.n_step, states or [convoy.structure.lane(i) for i in range(len(convoy.lanes))]
+            )
             staying = convoy.lanes
         staying = [lane for lane in staying if lane.left]
         if not staying:
@@ -256,11 +267,17 @@ def _drive(
             convoy, leap = formed(staying)
 
 
+def _states(convoy: Convoy, leap: Leap | None) -> list[State] | None:
+    """The structure in all lanes, where a leap holds it; None where the bodies of the convoy do."""
+    n = len(convoy.lanes)
+    return None if leap is None or n == 1 else [leap.state_of(i) for i in range(n)]
+
+
 def _make(
     convoy: Convoy, stretch: Stretch, couple: Couple, leap: Leap | None
-) -> dict[int, tuple[int, str | None]]:
-    """Make the steps of a stretch; lanes that failed, with the step inside the stretch and a message."""
-    external = convoy.external(stretch)
+) -> tuple[dict[int, tuple[int, str | None]], list[State] | None]:
+    """Make the steps of a stretch; lanes that failed, with the step inside the stretch and a message; the states."""
+    external, alone = convoy.external(stretch), len(convoy.lanes) == 1
     watching = [lane.recorder.watchers for lane in convoy.lanes]
     convoy.tape.start(stretch.n_step)
     message: str | None = None
@@ -279,12 +296,10 @@ def _make(
             who = (
                 [i for i, one in enumerate(watching) if one.looks_at(stretch.first + k)] if k in looks else []
             )
-            whole = True
             if leap is not None:
-                whole = len(watching) == 1 or k == stretch.n_step - 1
-                leap.show(stretch, k, range(len(watching)) if whole else [])
+                leap.show(stretch, k, [0] if alone else [])
             for i in who:
-                state = convoy.structure.full(i) if leap is None or whole else leap.state_of(i)
+                state = convoy.structure.full(i) if leap is None or alone else leap.state_of(i)
                 watching[i].look(stretch.first + k, *convoy.moment(i, state))
     own = {i: min(convoy.tape.filled, lane.left) for i, lane in enumerate(convoy.lanes) if lane.left}
     found: dict[int, tuple[int, str | None]] = {}
@@ -293,16 +308,17 @@ def _make(
         found = {i: (k, None) for i, k in bad.items() if k is not None}
     if found:
         earliest = min(k for k, _ in found.values())
-        return {i: entry for i, entry in found.items() if entry[0] == earliest}
+        return {i: entry for i, entry in found.items() if entry[0] == earliest}, None
     if message is not None:
         cut_off = [i for i in own if convoy.lanes[i].left > convoy.tape.filled] or list(own)
-        return dict.fromkeys(cut_off, (convoy.tape.filled, message))
+        return dict.fromkeys(cut_off, (convoy.tape.filled, message)), None
+    states = _states(convoy, leap)
     if convoy.fleet is not None:
-        wheels, line = convoy.contact_at(stretch, stretch.n_step - 1)
+        wheels, line = convoy.contact_at(stretch, stretch.n_step - 1, states)
         for i in own:
             at = convoy.coupled[i]
             convoy.lanes[i].recorder.compatibility.look(wheels[at], line[at])
-    return {}
+    return {}, states
 
 
 def _without(convoy: Convoy, failed: dict[int, tuple[int, str | None]]) -> list[Lane]:

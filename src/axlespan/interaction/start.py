@@ -24,16 +24,14 @@ import scipy.sparse as sp
 from axlespan.dynamics.integrator import State
 from axlespan.interaction.line_responses import LineResponses, side_by_side
 from axlespan.interaction.plan import Plan
+from axlespan.interaction.start_draft import Draft
 from axlespan.interaction.start_rows import (
     ContactRows,
-    MomentRows,
     about_to_enter,
     carried_by,
-    entering_wheels,
     rows_at,
 )
 from axlespan.interaction.start_vehicles import (
-    Group,
     Vehicles,
     condensed_stiffness,
     mass_factor,
@@ -108,7 +106,7 @@ def starts_of(plans: Sequence[Plan], factors: StartFactors | None = None) -> lis
     """The states at time zero of crossings of one structure; what they solve for goes side by side."""
     factors = factors or StartFactors(plans[0])
     kinds = Vehicles(plans[0])
-    drafts = [_Draft.of(plan, kinds) for plan in plans]
+    drafts = [Draft.of(plan, kinds) for plan in plans]
     _stand(drafts, factors)
     for draft in drafts:
         draft.follow_the_line()
@@ -117,77 +115,7 @@ def starts_of(plans: Sequence[Plan], factors: StartFactors | None = None) -> lis
     return [Start(d.structure, d.vehicles, d.forces, d.rows.load(d.forces[d.rows.on], n)) for d in drafts]
 
 
-@dataclass(eq=False)
-class _Draft:
-    """A start that is being worked out."""
-
-    plan: Plan
-    rows: MomentRows
-    groups: list[Group]
-    entering: npt.NDArray[np.bool_]  # (n_on,) wheels that the structure feels before they are on it
-    structure: State
-    vehicles: State
-    forces: FloatArray  # (n_contact,) [N]
-
-    @classmethod
-    def of(cls, plan: Plan, kinds: Vehicles) -> _Draft:
-        """All at rest under the static contact forces."""
-        rows, fleet = MomentRows.at(plan), plan.fleet
-        early = entering_wheels(plan, rows)
-        still = State.at_rest((plan.structure.size,)), State.at_rest((fleet.matrices.size,))
-        return cls(plan, rows, kinds.groups(fleet), early, *still, fleet.weight.copy())
-
-    @cached_property
-    def coupled_place(self) -> IntArray:
-        """Place of each contact (n_contact,) among the coupled ones; -1 for moving forces."""
-        place = np.full(len(self.forces), -1, dtype=np.int64)
-        place[self.plan.fleet.coupled] = np.arange(len(self.plan.fleet.coupled))
-        return place
-
-    @cached_property
-    def loading(self) -> IntArray:
-        """Wheels on the structure that load it, among those on it."""
-        return np.flatnonzero(self.rows.carried)
-
-    def touching(self) -> list[tuple[Group, IntArray, IntArray]]:
-        """Groups with their vehicles that load the structure, and with the others."""
-        loads = np.zeros(len(self.plan.fleet.coupled), dtype=bool)
-        place = self.coupled_place[self.rows.on[self.loading]]
-        loads[place[place >= 0]] = True
-        touch = [loads[group.contacts].any(axis=1) for group in self.groups]
-        return [(g, np.flatnonzero(t), np.flatnonzero(~t)) for g, t in zip(self.groups, touch, strict=True)]
-
-    def blocks(self, matrices: dict[int, FloatArray]) -> tuple[IntArray, FloatArray]:
-        """Coupled contacts (m,) of vehicles that load the structure, and a block (c, c) for each on the diagonal."""
-        wheels = [group.contacts[some] for group, some, _ in self.touching()]
-        chosen = np.concatenate([np.empty(0, dtype=np.int64), *(w.ravel() for w in wheels)])
-        result, at = np.zeros((len(chosen), len(chosen))), 0
-        for number, own in enumerate(wheels):
-            c = own.shape[1]
-            for _ in range(len(own)):
-                result[at : at + c, at : at + c] = matrices[number]
-                at += c
-        return chosen, result
-
-    def follow_the_line(self) -> None:
-        """Set displacements and velocities of the vehicles to those of the line under their wheels."""
-        fleet, rows, u, v = self.plan.fleet, self.rows, self.structure.u, self.structure.v
-        x = fleet.coupled
-        if not len(x):
-            return
-        height, rate = rows.height.copy(), rows.rate.copy()
-        if len(rows.on):
-            height[rows.on] += rows.read(u)
-            rate[rows.on] += rows.speed[rows.on] * rows.read(u, 1) + rows.read(v)
-        self.vehicles.v[fleet.dofs] = rate[x]
-        if np.any(height[x]):
-            level, values = height[x], self.vehicles.u
-            values[fleet.dofs] = level
-            for group in self.groups:
-                values[group.dofs[:, group.kind.rest]] = level[group.contacts] @ group.kind.follow.T
-
-
-def _stand(drafts: Sequence[_Draft], factors: StartFactors) -> None:
+def _stand(drafts: Sequence[Draft], factors: StartFactors) -> None:
     """Set displacements of the structure and contact forces with the trains at rest on it, and what enters."""
     plan = drafts[0].plan
     external = plan.forces.static(0.0)
@@ -217,7 +145,7 @@ def _stand(drafts: Sequence[_Draft], factors: StartFactors) -> None:
             draft.structure.v[:] += v
 
 
-def _elastic_share(draft: _Draft, level: FloatArray) -> None:
+def _elastic_share(draft: Draft, level: FloatArray) -> None:
     """Change contact forces as an uneven level (n_contact,) under vehicles on many wheels does."""
     own = level[draft.plan.fleet.coupled]
     if np.any(own):
@@ -226,7 +154,7 @@ def _elastic_share(draft: _Draft, level: FloatArray) -> None:
             draft.forces[wheels] += own[group.contacts] @ group.kind.stiffness
 
 
-def _balance(draft: _Draft, level: FloatArray, compliance: FloatArray) -> FloatArray:
+def _balance(draft: Draft, level: FloatArray, compliance: FloatArray) -> FloatArray:
     """Forces (m,) of the wheels that load the structure, which gives way under them: E K⁻¹ Eᵀ (m, m).
 
     X = X_st + k (E u + r) with E u = E u_0 - (E K⁻¹ Eᵀ) X.
@@ -276,11 +204,11 @@ def entering(plan: Plan, rows: ContactRows, forces: FloatArray) -> tuple[FloatAr
     return u, v
 
 
-def _accelerate(drafts: Sequence[_Draft], factors: StartFactors, kinds: Vehicles) -> None:
+def _accelerate(drafts: Sequence[Draft], factors: StartFactors, kinds: Vehicles) -> None:
     """Set the accelerations of both bodies, and the contact forces that go with them."""
     plan = drafts[0].plan
     external = plan.forces.at(0.0) if plan.forces.n_term else np.zeros(plan.structure.size)
-    struck: list[_Draft] = []
+    struck: list[Draft] = []
     nets = []
     for draft in drafts:
         net = _out_of_balance(draft, external)
@@ -313,7 +241,7 @@ def _accelerate(drafts: Sequence[_Draft], factors: StartFactors, kinds: Vehicles
             draft.structure.a[:] -= a
 
 
-def _out_of_balance(draft: _Draft, external: FloatArray) -> FloatArray | None:
+def _out_of_balance(draft: Draft, external: FloatArray) -> FloatArray | None:
     """Forces (n,) on the structure that accelerate it; None where it stands still, without wheels of vehicles."""
     m, state = draft.plan.structure, draft.structure
     net = external.copy()
@@ -330,7 +258,7 @@ def _out_of_balance(draft: _Draft, external: FloatArray) -> FloatArray | None:
 
 
 def _accelerate_vehicles(
-    draft: _Draft, kinds: Vehicles, of_vehicles: IntArray, between: FloatArray
+    draft: Draft, kinds: Vehicles, of_vehicles: IntArray, between: FloatArray
 ) -> FloatArray:
     """Set the vehicles' accelerations and change the contact forces, from the static ones; the changes (m,).
 
@@ -371,7 +299,7 @@ def _accelerate_vehicles(
     return change[loading]
 
 
-def _wanted(draft: _Draft) -> FloatArray:
+def _wanted(draft: Draft) -> FloatArray:
     """Accelerations (n_contact,) of the line under the wheels, but for what the change of their forces does to it."""
     rows, state = draft.rows, draft.structure
     result = rows.second_rate.copy()

@@ -213,7 +213,9 @@ def _reach(matrix: CsrMatrix, rows: IntArray) -> tuple[int, IntArray]:
     """The same for reverse Cuthill-McKee's order, with the part (n,) of each row: one after the other in this order."""
     n, filled = matrix.shape[0], np.flatnonzero(np.diff(matrix.indptr))
     rank = _inverse(rows).astype(np.int32)
-    last = np.arange(n, dtype=np.int32)  # in the order of elimination, the farthest row that each is connected with
+    last = np.arange(
+        n, dtype=np.int32
+    )  # in the order of elimination, the farthest row that each is connected with
     if len(filled):
         own = rank[filled]
         last[own] = np.maximum(own, np.maximum.reduceat(rank[matrix.indices], matrix.indptr[filled]))

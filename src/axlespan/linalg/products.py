@@ -1,4 +1,4 @@
-"""A sparse matrix times a vector, again and again: compiled where numba is there, each row summed in its own order."""
+"""Sparse matrices as compiled loops want them, and products with one: each row is summed in its own order."""
 
 from __future__ import annotations
 
@@ -6,10 +6,37 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import scipy.sparse as sp
 
 from axlespan.linalg.arrays import FloatArray
 from axlespan.linalg.compiled import Loop, compiled
+
+IndexArray = npt.NDArray[np.uint32]
+Parts = tuple[IndexArray | FloatArray, ...]
+
+
+def whole_of(matrix: sp.csr_array | None, n: int) -> Parts:
+    """Row starts, columns and entries; of an empty matrix (n, n) for None. Unsigned: see the band kernel."""
+    if matrix is None:
+        return np.zeros(n + 1, dtype=np.uint32), np.zeros(0, dtype=np.uint32), np.zeros(0)
+    entries = matrix.data.astype(np.float64, copy=False)
+    return matrix.indptr.astype(np.uint32), matrix.indices.astype(np.uint32), entries
+
+
+def half_of(matrix: sp.csr_array | None, n: int) -> Parts:
+    """The diagonal of a symmetric matrix, and row starts, columns and entries of what stands above it."""
+    if matrix is None:
+        return np.zeros(n), *whole_of(None, n)
+    rows = np.repeat(np.arange(n, dtype=matrix.indices.dtype), np.diff(matrix.indptr))
+    above = np.flatnonzero(matrix.indices > rows)
+    ends = np.searchsorted(above, matrix.indptr)
+    return (
+        matrix.diagonal(),
+        ends.astype(np.uint32),
+        matrix.indices[above].astype(np.uint32),
+        matrix.data[above],
+    )
 
 
 @cache
@@ -37,11 +64,7 @@ class Product:
 
     def __init__(self, matrix: sp.csr_array) -> None:
         self._matrix, self._loop = matrix, _loop()
-        self._parts = (
-            matrix.indptr.astype(np.uint32),
-            matrix.indices.astype(np.uint32),
-            matrix.data.astype(np.float64),
-        )
+        self._parts = whole_of(matrix, matrix.shape[0])
 
     def of(self, x: FloatArray) -> FloatArray:
         """The product (m,) with a vector (n,)."""

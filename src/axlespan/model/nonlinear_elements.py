@@ -7,15 +7,17 @@ method works on the element's d.o.f. alone. That is right for tens to a few hund
 
 from __future__ import annotations
 
+import traceback
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
 
-from axlespan.errors import InputError
+from axlespan.errors import AnalysisError, InputError
 from axlespan.model.system import SpringRows, System
 
 FloatArray = npt.NDArray[np.float64]
@@ -49,11 +51,11 @@ class ElementLaw:
 
     def force(self, e: FloatArray, rate: FloatArray, state: Any) -> FloatArray:
         """Those of the element."""
-        return np.asarray(self.element.force(e, rate, state), dtype=np.float64)
+        return np.asarray(self._asked("force", e, rate, state), dtype=np.float64)
 
     def blocks(self, e: FloatArray, rate: FloatArray, state: Any) -> tuple[FloatArray, FloatArray]:
         """Its tangents (m, m)."""
-        k, c = self.element.tangent(e, rate, state)
+        k, c = self._asked("tangent", e, rate, state)
         return np.asarray(k, dtype=np.float64), np.asarray(c, dtype=np.float64)
 
     def tangent(self, e: FloatArray, rate: FloatArray, state: Any) -> tuple[FloatArray, FloatArray]:
@@ -63,11 +65,28 @@ class ElementLaw:
 
     def advanced(self, e: FloatArray, rate: FloatArray, state: Any) -> Any:
         """What the element remembers."""
-        return self.element.advanced(e, rate, state)
+        return self._asked("advanced", e, rate, state)
 
     def energy(self, e: FloatArray, state: Any) -> FloatArray:
         """Not known: work is counted from the forces."""
         return np.zeros_like(e)
+
+    def _asked(self, what: str, e: FloatArray, rate: FloatArray, state: Any) -> Any:
+        """What a method of the element says.
+
+        Raises
+        ------
+        AnalysisError
+            If it raises anything itself.
+        """
+        try:
+            return getattr(self.element, what)(e, rate, state)
+        except Exception as error:
+            place = traceback.extract_tb(error.__traceback__)[-1]
+            raise AnalysisError(
+                f"element {type(self.element).__name__} fails in {what}: {type(error).__name__}: {error} "
+                f"({Path(place.filename).name}, line {place.lineno})"
+            ) from error
 
 
 class _WithSystem(Protocol):
@@ -87,8 +106,8 @@ def with_nonlinear_element(
     ----------
     body : Structure or Vehicle
     element : DofElement
-        Forces that do not balance each other need the support that they stand on among the d.o.f., or the check of
-        equilibrium says what is missing. Displacements count from the unloaded structure, in vehicles from rest.
+        Forces that do not balance each other stand on the ground beside the structure; reactions know of them where the
+        support's d.o.f. is named too. Displacements count from the unloaded structure, in vehicles from rest.
     dofs : sequence of str
         Names of its m d.o.f.
     name : str

@@ -17,6 +17,10 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 
+# Floats in a line of the cache.
+_LINE = 8
+
+
 class Chunk:
     """Some lanes that follow one another: their states and what a stretch of steps needs.
 
@@ -43,11 +47,11 @@ class Chunk:
         self.contacts, self.dofs, self.blocks = contacts, dofs, blocks
         self._body = body
         n, pad = len(body.rank), 2 * body.width
-        self._values = np.zeros((3, n, width))
-        self._x, self._added = np.zeros((n + pad) * width), np.zeros((n + pad) * width)
-        self._extra = np.zeros((n, width))
+        self._values = _aligned(3 * n * width).reshape(3, n, width)
+        self._x, self._added = _aligned((n + pad) * width), _aligned((n + pad) * width)
+        self._extra = _aligned(n * width).reshape(n, width)
         room = 1 << (2 * body.ahead + 1).bit_length()
-        self._ring = (np.zeros(room * width), np.zeros(room * width))
+        self._ring = (_aligned(room * width), _aligned(room * width))
         self._reach = np.zeros(2, dtype=np.int64)
 
     def arrays(self, forced: bool) -> tuple[Any, ...]:
@@ -120,6 +124,13 @@ class Chunk:
         if len(own):
             values = structure.state.values.reshape(3, len(self._body.rank), -1)
             values[:, :, own] = self._values[:, self._body.rank][:, :, own - self.lane]
+
+
+def _aligned(size: int) -> FloatArray:
+    """Zeros (size,) that begin where a line of the cache does: vectors of eight then lie in one line."""
+    room = np.zeros(size + _LINE)
+    begin = (-room.ctypes.data // room.itemsize) % _LINE
+    return room[begin : begin + size]
 
 
 def _within(names: IntArray, low: int, high: int | None) -> IntArray:

@@ -341,13 +341,25 @@ class NonlinearCoupling:
         self.earlier, self.before, self.approach = self.before, self.approach, approach
         self.flights.look(step, laws.may_part & ~(fleet.forces > 0.0), landed, approach, closing)
 
-    def went(self, step: int, counts: IntArray, approaches: FloatArray) -> None:
-        """Take over iterations of steps that were made elsewhere, and approaches (3, n_coupled) of the last three."""
-        self.iterations.extend(counts.tolist())
+    def went(self, step: int, approaches: FloatArray) -> None:
+        """Take over approaches (3, n_coupled) of the last three steps, made elsewhere, with no wheel in the air."""
         self.approach, self.before, self.earlier = approaches
         nobody = np.zeros(len(self.approach), dtype=bool)
         if len(nobody):
             self.flights.look(step, nobody, nobody, self.approach, self.approach)
+
+    def flew(self, step: int, forces: FloatArray, approach: FloatArray, free: FloatArray) -> None:
+        """Take over a step made elsewhere, in which no wheel lifted off a one-sided contact or landed on one.
+
+        Raises
+        ------
+        AnalysisError
+            If a vehicle is lost or a wheel chatters.
+        """
+        closing = self._closing_rates(free)
+        self.earlier, self.before, self.approach = self.before, self.approach, approach
+        nobody = np.zeros(len(approach), dtype=bool)
+        self.flights.look(step, self.laws.may_part & ~(forces > 0.0), nobody, approach, closing)
 
     @property
     def time_step(self) -> float:

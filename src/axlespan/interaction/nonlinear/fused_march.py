@@ -41,7 +41,8 @@ def _march() -> Loop:
 class NonlinearMarch(FusedMarch):
     """Consecutive steps of one crossing; those out of the ordinary are made by the coupling.
 
-    These are steps in which a wheel lifts off or is in the air, or in which Newton's method does not converge.
+    These are steps in which a wheel lifts off a one-sided contact or lands on one, or in which Newton's method does not
+    converge.
     """
 
     needs_systems = True
@@ -125,10 +126,8 @@ class NonlinearMarch(FusedMarch):
             k += 1
 
     def _is_usual(self) -> bool:
-        """Whether the loop can go on from here: all wheels touch, and not too many springs deviate."""
-        coupling = self._coupling
-        touch = np.array_equal(coupling.touching, coupling.laws.constrained)
-        return touch and not coupling.flights.any_in_air and len(coupling.field.active) <= LARGEST
+        """Whether the loop can go on from here: not too many springs deviate."""
+        return len(self._coupling.field.active) <= LARGEST
 
     def _make_one(self, stretch: Stretch, k: int, external: FloatArray | None) -> None:
         """Have the coupling make a step, with the bodies of the convoy."""
@@ -181,6 +180,7 @@ class NonlinearMarch(FusedMarch):
             np.zeros(n_step, dtype=np.int64),
             np.zeros((n_step if field.on_ground else 0, field.n)),
         )
+        flown = np.zeros((2, n_step, approaches.shape[1]))
         most = np.array([len(coupling.residuals), field.largest])
         k, why, spring = _march()(
             (0,),
@@ -196,12 +196,12 @@ class NonlinearMarch(FusedMarch):
             (near, self._watched, vehicles, forces, sums, self._sums, chunk.lane),
             (
                 (*self._wheel_laws, approaches, coupling.time_step),
-                coupling.laws.may_part,
+                coupling.touching,
                 self._apart,
                 coupling.scale,
             ),
             self._springs,
-            (last, counts, history),
+            (last, counts, history, flown),
             (self._slowest, most),
             self._work,
             first,
@@ -211,9 +211,21 @@ class NonlinearMarch(FusedMarch):
         if most[0] > len(coupling.residuals):
             coupling.residuals = self._slowest[: most[0]].tolist()
         if made:
-            coupling.went(stretch.first + k - 1, counts[:made], approaches)
             field.went(last, int(most[1]), history[:made])
+            coupling.iterations.extend(counts[:made].tolist())
+            self._tell(stretch, first, flown[:, :made], approaches)
         return k, why, spring
+
+    def _tell(self, stretch: Stretch, first: int, flown: FloatArray, approaches: FloatArray) -> None:
+        """Tell the coupling of the gaps of the free response and the approaches (2, n_step, n_coupled) of steps."""
+        coupling, tape, n_step = self._coupling, self._convoy.tape, flown.shape[1]
+        forces = tape.arrays[2][first : first + n_step][:, self._convoy.joint.coupled]
+        if not coupling.flights.any_in_air and np.all(forces[:, coupling.laws.may_part] > 0.0):
+            coupling.went(stretch.first + first + n_step - 1, approaches)
+            return
+        for j in range(n_step):
+            tape.filled = first + j  # the steps before are good, whatever is found now
+            coupling.flew(stretch.first + first + j, forces[j], flown[1, j], flown[0, j])
 
     def show(self, stretch: Stretch, k: int, lanes: Sequence[int]) -> None:
         """Bring the bodies of the convoy to the step just made, unless they made it."""

@@ -44,6 +44,10 @@ def watch(coupling: NonlinearCoupling, recorder: Recorder) -> None:
     """Let a recorder know which wheels touch, what springs add to reactions, and what flew."""
     recorder.compatibility.touching = lambda: coupling.touching
     recorder.reactions.inner = coupling.field.on_supports
+    system = recorder.plan.crossing.structure.system
+    up = system.translation("z")
+    coupling.field.weigh(up[system.free], up[system.prescribed])
+    recorder.balance.left_over = coupling.field.left_over
     recorder.more_checks = coupling.flights.checks
     recorder.more_facts = coupling.facts
     recorder.energy.inner_of_fleet = coupling.field.fleet_force

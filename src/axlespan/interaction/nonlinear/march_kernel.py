@@ -1,8 +1,8 @@
 """Consecutive steps with laws of contact and nonlinear springs in one compiled loop.
 
 The loop of :mod:`axlespan.interaction.fused.kernel` for one crossing, with the interface of wheels and springs in place
-of the contact system. A step that is out of the ordinary (a wheel lifts off, no convergence) is not made: the loop
-returns, and the coupling makes it. Only to be imported where numba is.
+of the contact system. A step that is out of the ordinary (a wheel on a one-sided contact lifts off or lands, no
+convergence) is not made: the loop returns, and the coupling makes it. Only to be imported where numba is.
 """
 
 from __future__ import annotations
@@ -33,6 +33,7 @@ from axlespan.interaction.nonlinear.law_codes import (
     DONE,
     LARGEST,
     ONE_SIDED,
+    RIGID,
     SPRING_ROWS,
     UNUSUAL,
     WHEEL_ROWS,
@@ -246,13 +247,17 @@ def _respond(
 
 
 @as_compiled
-def _remember(made: int, forces: Any, wheels: Any, laws: Any, room: Any, memory: Any, history: Any) -> None:
+def _remember(
+    made: int, forces: Any, wheels: Any, laws: Any, room: Any, memory: Any, history: Any, flown: Any
+) -> None:
     """Take over what a completed step leaves."""
     kinds, approaches = laws[0][0], laws[0][2]
     active, _, values = room
     for i in range(len(forces)):
         approaches[2, i], approaches[1, i] = approaches[1, i], approaches[0, i]
-        approaches[0, i] = 0.0 if kinds[i] <= ONE_SIDED else wheels[_APPROACH, i]
+        closed = kinds[i] == RIGID or (kinds[i] == ONE_SIDED and forces[i] > 0.0)
+        approaches[0, i] = 0.0 if closed else wheels[_APPROACH, i]
+        flown[0, made, i], flown[1, made, i] = wheels[_GAP, i], approaches[0, i]
     for s in range(len(active)):
         memory[0, s] = values[_Q, s] if active[s] else 0.0
         memory[1, s], memory[2, s] = values[_E, s], values[_RATE, s]
@@ -273,8 +278,8 @@ def march(
     known_place, known_weights, known_forces = known
     vectors, factors = external
     forces, gaps, n_coupled = fleet[0], fleet[1], fleet[2][1]
-    wheel_laws, may_part, apart, scale = interface
-    last, counts, history = memory
+    wheel_laws, touching, apart, scale = interface
+    last, counts, history, flown = memory
     shift, w, all_known = len(width), np.uint64(len(width)), np.arange(len(known_forces))
     u_from_a, rate_from_e = late[3], late[4] / late[3]
     wheels, room, rooms = work
@@ -330,14 +335,14 @@ def march(
             if _settle(springs, added, w, u_from_a, rate_from_e, room):
                 break
             _clear(added, reach, shift)
-        for i in range(n_coupled):
-            usual = usual and (not may_part[i] or forces[i] > 0.0)
+        for i in range(n_coupled):  # a wheel on a one-sided contact lifts off or lands
+            usual = usual and (wheel_laws[0][i] != ONE_SIDED or touching[i] == (forces[i] > 0.0))
         if not usual:
             _clear(added, reach, shift)
             for i in range(n_coupled):
                 forces[i] = wheels[_BEFORE, i]
             return k, COLUMN if needed > 0 else UNUSUAL, needed - 1
-        _remember(k - first, forces, wheels, laws, room, last, history)
+        _remember(k - first, forces, wheels, laws, room, last, history, flown)
         counts[k - first] = max(apart_ones, iterations)
         figures[1][1] = max(figures[1][1], n_unknown - len(system[0]))
         take_fleet(fleet, late, tape, k)

@@ -56,6 +56,8 @@ class SpringField:
         self.active = self._active()
         self.largest = len(self.active)  # unknowns of a step, so far
         self.history = [self.q]  # of the start and each step, where springs stand on supports
+        self._lift: FloatArray | None = None  # (n_own,) of elements that stand on nothing
+        self._recent = np.zeros((0, self.n_own))
         self._columns: SpringColumns | None = None
         self._of_fleet: FloatArray | None = None  # compliance (n_fleet, n_fleet) of springs of vehicles [m/N]
         self._found = self.q, self.e, self.rate  # of the last attempt of a step
@@ -81,7 +83,7 @@ class SpringField:
         """Stand where the same springs at another time step stand: that is the last completed step."""
         self.q, self.e, self.rate, self.active = other.q, other.e, other.rate, other.active
         self.largest = max(self.largest, other.largest)
-        if self._ground.nnz:
+        if self.on_ground:
             self.history.append(self.q)
 
     # --- compliance ------------------------------------------------------------------------------
@@ -230,7 +232,7 @@ class SpringField:
             self.q, self.e, self.rate = self._found
             self.springs.advance(self.e, self.rate)
             self.active = self._active()
-            if self._ground.nnz:
+            if self.on_ground:
                 self.history.append(self.q)
         if self._response is None:
             structure.take(load, known)
@@ -250,8 +252,17 @@ class SpringField:
 
     @property
     def on_ground(self) -> bool:
-        """Whether springs stand on supports."""
-        return bool(self._ground.nnz)
+        """Whether springs stand on supports, or elements on nothing that is modeled."""
+        return bool(self._ground.nnz) or self._lift is not None
+
+    def weigh(self, up: FloatArray, up_of_supports: FloatArray) -> None:
+        """Note what forces of the springs are left in sum, from d.o.f. (n,) and supports that all move up by one."""
+        lift = self._rows @ up + self._ground @ up_of_supports
+        self._lift = lift if np.any(np.abs(lift) > 1e-9) else None
+
+    def left_over(self) -> FloatArray | None:
+        """Vertical force (n_step,) that elements which stand on nothing take, in the steps last asked for; None: none."""
+        return None if self._lift is None else np.asarray(self._recent @ self._lift)
 
     def take_fleet(self, fleet: FleetBody, forces: FloatArray) -> None:
         """Give the vehicles the contact forces (n_coupled,) and their springs, and complete the step."""
@@ -272,10 +283,11 @@ class SpringField:
 
     def on_supports(self, n_step: int) -> FloatArray | None:
         """What the deviations add to the reactions in the last so many steps (n_step, n_prescribed)."""
-        if not self._ground.nnz:
+        if not self.on_ground:
             return None
         recent, self.history = np.array(self.history[:n_step]), self.history[n_step:]
-        return np.asarray(recent[:, : self.n_own] @ self._ground)
+        self._recent = recent[:, : self.n_own]
+        return np.asarray(self._recent @ self._ground)
 
     def facts(self) -> dict[str, object]:
         """For the summary."""

@@ -262,7 +262,7 @@ class Springs:
 
         q = np.zeros(self.n)
         rest, e = residual(q)
-        scale = max(float(np.abs(self.stiffness * free).max()), 1.0)
+        scale = max(float(np.abs(self.stiffness * free).max()), float(np.abs(rest).max()), 1.0)
         for _ in range(_LIMIT):
             slope = self.static_deviation(e)[1]
             varies = slope != 0.0 if slope.ndim == 1 else np.any(slope != 0.0, axis=1)

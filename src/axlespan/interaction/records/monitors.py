@@ -77,6 +77,8 @@ class BalanceMonitor:
         self.restarted: Mapping[int, float] = {}
         self.released: Mapping[int, tuple[FloatArray, float]] = {}
         self.between: Mapping[int, Sequence[Substep]] = {}  # steps that were cut
+        # What elements that stand on nothing take in the steps for which reactions were asked last (n_step,).
+        self.left_over: Callable[[], FloatArray | None] | None = None
 
     def _read_tables(self, plan: Plan) -> None:
         """What follows from the structure alone."""
@@ -130,6 +132,9 @@ class BalanceMonitor:
         applied = sum((amount * factor(times) for amount, factor in self._loads), np.zeros(len(steps)))
         wheels = self._carried(positions, forces)
         residual = reactions @ self._t_prescribed + applied - wheels - totals
+        left_over = self.left_over() if self.left_over is not None else None
+        if left_over is not None:
+            residual -= left_over
         self._worst = max(self._worst, float(np.abs(residual).max()))
         self._scale = max(self._scale, *(float(np.abs(part).max()) for part in (wheels, applied, totals)))
 
