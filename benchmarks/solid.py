@@ -62,18 +62,27 @@ def literal_step(integrator: Integrator, path_dofs: np.ndarray, wheels: int = 9)
 
 
 def setup(case: asp.Crossing, options: dict[str, object], runs: int) -> list[Row]:
-    """All that comes before the second step, beside one factorization and the columns under the wheels."""
+    """All that comes before the second step, beside one factorization and the columns of the path."""
     plan = plan_for(case, settings_for(case, steps=1, **options))  # type: ignore[arg-type]
     rows = rows_of(plan, np.array([1]))
     dofs = np.unique(rows.dofs[rows.weights != 0.0])
 
+    path = plan.rows.paths[0].free.path_dofs
+
     def least() -> None:
         Integrator(plan.structure, asp.Alpha(0.0), 1e-3).columns(dofs)
+
+    def columns() -> None:
+        Integrator(plan.structure, asp.Alpha(0.0), 1e-3).columns(path)
 
     def whole() -> None:
         asp.simulate(case, steps=1, **options)  # type: ignore[arg-type]
 
-    alternatives = {"factorization and columns": least, "run of one step": whole}
+    alternatives = {
+        "factorization, all columns": columns,
+        "factorization, first columns": least,
+        "run of one step": whole,
+    }
     return in_turns("example 3.2 on solids, set-up", alternatives, runs)
 
 

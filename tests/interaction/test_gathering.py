@@ -76,7 +76,7 @@ def test_recorders_share_tables_of_the_same_readings_only():
 
     first = Recorder(plan(CARS, 40.0, sensors={"mid": 10.0}, line_points=5))
     same = Recorder(plan(LOADS, 60.0, sensors={"mid": 10.0}, line_points=5), like=first)
-    assert same.line._rows is first.line._rows and same.reactions.sums is first.reactions.sums
+    assert same.line.sums is first.line.sums and same.reactions.sums is first.reactions.sums
     assert (
         same.line._motion is not first.line._motion
         and same.reactions._inertia is not first.reactions._inertia
@@ -87,7 +87,7 @@ def test_recorders_share_tables_of_the_same_readings_only():
         plan(CARS, 40.0, sensors={"mid": 10.0}, line_points=6),
         plan(CARS, 40.0, sensors={"mid": 10.0}, line_points=5, footprint=0.7),
     ):
-        assert Recorder(other, like=first).line._rows is not first.line._rows
+        assert Recorder(other, like=first).line.sums is not first.line.sums
 
 
 def test_crossings_side_by_side_and_alone():

@@ -9,6 +9,7 @@ import scipy.sparse as sp
 import axlespan as asp
 from axlespan.bridges.unilateral import with_unilateral_springs
 from axlespan.contact.laws import Hertz, LinearSpring, Unilateral
+from axlespan.elements.beam import BeamProperties
 from axlespan.errors import AnalysisError
 from axlespan.interaction.nonlinear.contact import NonlinearCoupling
 from axlespan.interaction.nonlinear.fused_march import NonlinearMarch
@@ -17,6 +18,8 @@ from axlespan.interaction.nonlinear.spring_columns import SpringColumns
 from axlespan.interaction.nonlinear.springs import Springs
 from axlespan.interaction.nonlinear.static_columns import StaticColumns
 from axlespan.linalg.factor import factorize
+from axlespan.model.compile import compile_model
+from axlespan.model.model import Model
 from axlespan.model.nonlinear import (
     BilinearHysteresis,
     MultilinearDashpot,
@@ -27,6 +30,8 @@ from axlespan.model.nonlinear import (
     UnilateralSpring,
 )
 from axlespan.model.system import SpringRows
+from axlespan.running.line import path_on_beams
+from axlespan.running.structure import MAIN_LINE, Structure
 from axlespan.vehicles.train import Placement
 
 pytest.importorskip("numba")
@@ -51,6 +56,38 @@ AXLES = asp.Train.of(asp.vehicles.axle_loads(loads=[1e5, 1e5], positions=[0.0, 2
 WAVES = asp.irregularity.Harmonic(amplitude=1e-3, wavelength=3.0)
 BUMPS = asp.irregularity.Harmonic(amplitude=8e-3, wavelength=3.0)
 
+
+def bed():
+    """A beam on the ground by springs and dashpots of all laws that are coded, under a load that swings."""
+    n = 48
+    x = 0.5 * np.arange(n + 1)
+    nodes = np.concatenate([np.column_stack([x, 0.0 * x]), np.column_stack([x, 0.0 * x - 0.3])])
+    pairs = np.column_stack([np.arange(n + 1) + n + 1, np.arange(n + 1)])
+    beam = BeamProperties(bending_stiffness_y=6e6, mass_per_length=300.0)
+    model = (
+        Model(plane=True)
+        .with_nodes(nodes)
+        .with_beams(np.column_stack([np.arange(n), np.arange(n) + 1]), beam)
+    )
+    laws = (
+        UnilateralSpring(2e7, 2e4),
+        PowerSpring(6e8, 1.5),
+        MultilinearSpring([(-2e-3, -3e4), (-1e-3, -2e4), (0.0, 0.0), (1e-3, 5e3)]),
+        PowerDashpot(2e5, 1.2),
+        MultilinearDashpot([(-0.1, -8e3), (0.0, 0.0), (0.05, 6e3)]),
+    )
+    for i, law in enumerate(laws):
+        every = pairs[i::3] if i < 3 else pairs[i::5]
+        model = model.with_nonlinear_springs(every, law, gap=2e-4 if i == 0 else 0.0, name=f"law {i}")
+    for i in range(n + 1):
+        model = model.with_support(n + 1 + i, ["z"], name=f"ground {i}")
+    model = model.with_load(30, "z", -2e4, lambda t: np.sin(60.0 * t))
+    compiled = compile_model(model)
+    line = path_on_beams(model, compiled.table, range(n + 1))
+    return Structure(compiled.system, {MAIN_LINE: line}, model=model)
+
+
+BED = bed()
 CASES = {
     # structure, train, irregularity, law, alpha, start, steps
     "rigid, hanging": (HANGING, MASSES, WAVES, "rigid", -0.1, -25.0, 600),
@@ -58,6 +95,8 @@ CASES = {
     "axle loads, hanging": (HANGING, AXLES, None, "rigid", 0.0, -25.0, 600),
     "unilateral, hanging, bumps": (HANGING, MASSES, BUMPS, "unilateral", -0.1, -25.0, 400),
     "mixed, hanging": (HANGING, MIXED, WAVES, "rigid", -0.1, -25.0, 900),
+    "hertz, all laws": (BED, MASSES, WAVES, Hertz(stiffness=1e10), -0.1, -2.0, 500),
+    "mixed, all laws, bumps": (BED, MIXED, BUMPS, "rigid", -0.05, -2.0, 500),
     "hertz": (DECK, MASSES, WAVES, "hertz", -0.1, 0.0, 700),
     "mixed, bumps": (DECK, MIXED, BUMPS, "rigid", -0.05, 0.0, 300),
 }
@@ -78,6 +117,7 @@ def run(case, monkeypatch, fused=True):
             contact=contact,
             method=asp.Alpha(alpha),
             sensors={"middle": 10.0},
+            fields=[0.0, 0.1, 0.123],
         )
     return result, len(made)
 
@@ -96,6 +136,8 @@ def test_same_numbers(case, monkeypatch):
             # The factor of stiff rails over soft ballast is less sure than that of a beam.
             tolerance = 1e-9 if CASES[case][0] is HANGING and name.startswith("sensor") else 1e-10
             np.testing.assert_allclose(one, two, rtol=0.0, atol=tolerance * np.abs(two).max(), err_msg=name)
+    fields = other.fields.displacement
+    np.testing.assert_allclose(own.fields.displacement, fields, rtol=0.0, atol=1e-9 * np.abs(fields).max())
     # Stiff supports carry what rounding leaves of accelerations.
     reaction = other.support_reaction
     np.testing.assert_allclose(own.support_reaction, reaction, rtol=0.0, atol=1e-8 * np.abs(reaction).max())

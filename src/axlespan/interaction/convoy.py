@@ -21,6 +21,7 @@ from axlespan.interaction.bodies import FleetBody, PreparedStructure, StructureB
 from axlespan.interaction.contact_system import Stretch, stretch_of
 from axlespan.interaction.plan import Fleet, Plan, joined
 from axlespan.interaction.records.recorder import Recorder
+from axlespan.interaction.records.sums import Sums
 from axlespan.interaction.records.tape import LaneTape, Tape, Watched
 from axlespan.interaction.start import Start
 
@@ -85,7 +86,8 @@ class Convoy:
             forces = np.concatenate([lane.forces for lane in lanes])[self.joint.coupled]
             self.fleet = FleetBody(self.joint, settings.method, settings.time_step, State(values), forces)
         dofs = np.unique(np.concatenate([lane.recorder.selected for lane in lanes]))
-        watched = Watched(dofs, lanes[0].recorder.sums, prepared.shapes)
+        self._own_sums, sums = _distinct([lane.recorder.sums for lane in lanes])
+        watched = Watched(dofs, sums, prepared.shapes)
         self.tape = Tape(watched, len(lanes), self.joint.matrices.size, len(self.joint.weight))
 
     def stretch(self, *, systems: bool = True, idle: bool = False) -> Stretch:
@@ -127,7 +129,8 @@ class Convoy:
     def tape_of(self, lane: int) -> LaneTape:
         """The tape of one lane."""
         dofs = self.lanes[lane].recorder.selected
-        return self.tape.of(lane, dofs, self.vehicle_dofs[lane], self.contacts[lane])
+        own = self._own_sums[lane]
+        return self.tape.of(lane, dofs, self.vehicle_dofs[lane], self.contacts[lane], own)
 
     def moment(
         self, lane: int, structure: State | None = None
@@ -328,6 +331,18 @@ def _without(convoy: Convoy, failed: dict[int, tuple[int, str | None]]) -> list[
         positions = lane.plan.rows.positions(lane.plan.times_of(steps))
         lane.error = lane.recorder.broken_off(steps, positions, convoy.tape_of(i), k, message)
     return [lane for i, lane in enumerate(convoy.lanes) if i not in failed]
+
+
+def _distinct(sums: Sequence[Sums]) -> tuple[list[slice], Sums]:
+    """What each lane reads of the sums of all: those that read the same share them."""
+    known: dict[int, tuple[slice, Sums]] = {}
+    begin = 0
+    for one in sums:
+        if id(one) not in known:
+            known[id(one)] = slice(begin, begin + one.count), one
+            begin += one.count
+    parts = [part for _, part in known.values()]
+    return [known[id(one)][0] for one in sums], parts[0] if len(parts) == 1 else Sums.together(parts)
 
 
 def _slices(sizes: Sequence[int]) -> list[slice]:

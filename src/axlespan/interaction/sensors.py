@@ -86,15 +86,3 @@ def sensor_rows(
         blocks.append(structure.line(line).rows(where, n))
         order.append(numbers)
     return sp.csr_array(sp.csr_array(sp.vstack(blocks))[np.argsort(np.concatenate(order))])
-
-
-def as_weights(rows: sp.csr_array) -> tuple[IntArray, FloatArray]:
-    """D.o.f. and weights (n_row, n_most) of sparse rows; unused places have zero weights."""
-    count = np.diff(rows.indptr)
-    most = max(int(count.max(initial=0)), 1)
-    dofs = np.zeros((len(count), most), dtype=np.int64)
-    weights = np.zeros((len(count), most))
-    row = np.repeat(np.arange(len(count)), count)
-    rank = np.arange(len(row)) - np.repeat(rows.indptr[:-1], count)
-    dofs[row, rank], weights[row, rank] = rows.indices, rows.data
-    return dofs, weights

@@ -103,10 +103,10 @@ class System:
         """Blocks F and P of the three matrices."""
         blocks = {}
         for letter, matrix in (("K", self.stiffness), ("M", self.mass), ("C", self.damping)):
-            rows_free, rows_prescribed = matrix[self.free], matrix[self.prescribed]
-            blocks[f"{letter}_FF"] = _clean(rows_free[:, self.free])
-            blocks[f"{letter}_FP"] = _clean(rows_free[:, self.prescribed])
-            blocks[f"{letter}_PP"] = _clean(rows_prescribed[:, self.prescribed])
+            row = np.repeat(np.arange(self.size), np.diff(matrix.indptr))
+            blocks[f"{letter}_FF"] = _block(matrix, row, self.free, self.free)
+            blocks[f"{letter}_FP"] = _block(matrix, row, self.free, self.prescribed)
+            blocks[f"{letter}_PP"] = _block(matrix, row, self.prescribed, self.prescribed)
         return Partition(**blocks)
 
     @cached_property
@@ -151,8 +151,19 @@ class System:
         return replace(self, loads=(*self.loads, *loads))
 
 
-def _clean(matrix: sp.csr_array) -> sp.csr_array:
-    result = sp.csr_array(matrix)
-    result.eliminate_zeros()
+def _block(matrix: sp.csr_array, row: IntArray, rows: IntArray, columns: IntArray) -> sp.csr_array:
+    """Some rows and columns of a matrix whose entries stand in ``row`` (nnz,), without zeros, sorted."""
+    whole = np.int32 if matrix.nnz < np.iinfo(np.int32).max else np.int64
+    numbers = np.full((2, matrix.shape[0]), -1, dtype=whole)
+    numbers[0, rows], numbers[1, columns] = np.arange(len(rows)), np.arange(len(columns))
+    i, j = numbers[0, row], numbers[1, matrix.indices]
+    kept = np.flatnonzero((i >= 0) & (j >= 0) & (matrix.data != 0.0))
+    i = i[kept]
+    if np.any(i[1:] < i[:-1]):  # prescribed d.o.f. in another order
+        order = np.argsort(i, kind="stable")
+        i, kept = i[order], kept[order]
+    begins = np.zeros(len(rows) + 1, dtype=whole)
+    np.cumsum(np.bincount(i, minlength=len(rows)), out=begins[1:])
+    result = sp.csr_array((matrix.data[kept], j[kept], begins), shape=(len(rows), len(columns)))
     result.sort_indices()
     return result

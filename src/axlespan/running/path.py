@@ -151,13 +151,23 @@ class PolynomialPath:
         dofs[:, slots, : own.shape[2]], weights[:, slots, : own.shape[2]] = own_dofs, own
 
     def loads(
-        self, positions: FloatArray, forces: FloatArray, wheels: IntArray, n: int, shift: float = 0.0
+        self,
+        positions: FloatArray,
+        forces: FloatArray,
+        wheels: IntArray,
+        n: int,
+        shift: float = 0.0,
+        *,
+        one_way: bool = False,
     ) -> FloatArray:
         """Loads (n_step, n) on the d.o.f. of some wheels, from positions [m] and forces [N] (n_step, n_contact) of all.
 
-        ``shift`` [m] is added to the positions.
+        ``shift`` [m] is added to the positions. Wheels that run one way are left out where they never come by.
         """
         total = np.zeros((len(positions), n))
+        if one_way and len(positions):
+            ends = positions[[0, -1]][:, wheels] + shift
+            wheels = wheels[(ends.max(axis=0) >= self.start) & (ends.min(axis=0) <= self.stop)]
         loops = None if positions.shape[0] * len(wheels) < _MANY else _loops()
         if loops is not None:
             arrays = (np.ascontiguousarray(positions), shift, np.ascontiguousarray(forces), wheels, total)

@@ -30,6 +30,9 @@ GRAVITY = 9.81  # [m/s^2]
 
 # Vehicles with more d.o.f. than this tell their 40 lowest frequencies only.
 _ALL_MODES_UP_TO = 400
+# Up to so many d.o.f. dense matrices are quicker, and from this smallest eigenvalue of the scaled stiffness on a
+# vehicle stands beyond doubt.
+_DENSE_UP_TO, _SURE = 60, 1e-6
 
 #: Names of the running lines of the left and the right wheels of vehicles in space.
 LEFT, RIGHT = "left", "right"
@@ -139,17 +142,19 @@ class Vehicle(Shown):
         weight = (system.weight(gravity) + sum(constant, np.zeros(system.size)))[system.free]
         x = self.contact_dofs
         rest = np.setdiff1d(np.arange(len(weight)), x)
-        stiffness = sp.csr_array(blocks.K_FF)
         forces = -weight[x]
-        if len(rest):
-            inner = sp.csr_array(stiffness[rest][:, rest])
-            try:
-                u = factorize(inner).solve(weight[rest].copy())
-            except NotPositiveDefinite as error:
-                raise self._mechanism(rest[np.asarray(error.suspects)]) from error
-            forces = forces + stiffness[x][:, rest] @ u
+        if len(rest) and len(weight) <= _DENSE_UP_TO:
+            stiffness = blocks.K_FF.toarray()
+            inner, across = stiffness[np.ix_(rest, rest)], stiffness[np.ix_(x, rest)]
+            stands = _stands_surely(inner)
+            u = np.linalg.solve(inner, weight[rest]) if stands else self._sunk(inner, weight, rest)
+            forces = forces + across @ u
+        elif len(rest):
+            sparse = sp.csr_array(blocks.K_FF)
+            forces = forces + sparse[x][:, rest] @ self._sunk(sparse[rest][:, rest], weight, rest)
         if gravity > 0.0 and np.any(forces <= 0.0):
-            worst = int(np.argmin(forces))
+            low = float(forces.min())
+            worst = int(np.argmax(forces <= low + 1e-9 * abs(low)))  # the first of those that are alike
             raise InputError(
                 "must press on the line when it stands still on level ground",
                 field=f"wheel '{self.contacts[worst].name}' of vehicle '{self.name}'",
@@ -159,6 +164,13 @@ class Vehicle(Shown):
                 else "Check the masses and the positions of the bodies over the wheels",
             )
         return np.asarray(forces)
+
+    def _sunk(self, inner: sp.csr_array | FloatArray, weight: FloatArray, rest: IntArray) -> FloatArray:
+        """Displacements (n_rest,) under the weight, on wheels that stand still."""
+        try:
+            return np.asarray(factorize(inner).solve(weight[rest].copy()))
+        except NotPositiveDefinite as error:
+            raise self._mechanism(rest[np.asarray(error.suspects)]) from error
 
     def _mechanism(self, dofs: IntArray) -> InputError:
         assert self.system is not None
@@ -327,6 +339,14 @@ class Vehicle(Shown):
         if self.system is not None:
             facts.append(("d.o.f.", some([self.system.free_name(i) for i in range(len(self.system.free))])))
         return Card(f"Vehicle: {self.name}", facts, "asp.Train.of(vehicle, count=8, spacing=24.775)")
+
+
+def _stands_surely(stiffness: FloatArray) -> bool:
+    """Whether a small matrix is symmetric and far from singular, so that nothing needs to be looked at more closely."""
+    size = np.sqrt(np.abs(stiffness.diagonal()))
+    if not size.all() or not np.array_equal(stiffness, stiffness.T):
+        return False
+    return bool(np.linalg.eigvalsh(stiffness / size / size[:, None])[0] > _SURE)
 
 
 def _rank(contacts: tuple[ContactPoint, ...], name: str) -> int:

@@ -8,6 +8,7 @@ import scipy.sparse as sp
 
 from axlespan.interaction.line_points import deck_line
 from axlespan.interaction.plan import Plan
+from axlespan.interaction.records.sums import Sums
 from axlespan.running.structure import Structure
 
 FloatArray = npt.NDArray[np.float64]
@@ -16,10 +17,6 @@ IntArray = npt.NDArray[np.int64]
 #: Lines under the wheels of each side, and the length over which twist is measured [m].
 LEFT, RIGHT = "left", "right"
 TWIST_LENGTH = 3.0
-
-Rows = FloatArray | sp.csr_array
-# Up to this many entries a dense product is quicker than a sparse one.
-_DENSE_UP_TO = 20_000
 
 
 def twist_rows(structure: Structure, positions: FloatArray) -> sp.csr_array:
@@ -40,10 +37,6 @@ def twist_rows(structure: Structure, positions: FloatArray) -> sp.csr_array:
     return sp.csr_array(cross[1] - cross[0])
 
 
-def _operand(matrix: sp.csr_array) -> Rows:
-    return matrix.toarray() if matrix.shape[0] * matrix.shape[1] <= _DENSE_UP_TO else matrix
-
-
 class LineHistories:
     """Keeps the deck's vertical motion at ``plan.settings.line_points``.
 
@@ -52,8 +45,7 @@ class LineHistories:
 
     positions: FloatArray  # (n_point,) [m]
     ends: FloatArray  # (2,) [m]
-    free_dofs: IntArray
-    _rows: tuple[Rows, Rows]  # of motion and of acceleration, over the free d.o.f.
+    sums: Sums  # of displacements (n_motion,), then of accelerations (n_point,)
     _moved: tuple[sp.csr_array, sp.csr_array]  # the same over the supports that move
 
     def __init__(self, plan: Plan, like: LineHistories | None = None) -> None:
@@ -61,11 +53,15 @@ class LineHistories:
         if like is None:
             self._read_rows(plan)
         else:
-            self.positions, self.ends, self.free_dofs = like.positions, like.ends, like.free_dofs
-            self._rows, self._moved = like._rows, like._moved
+            self.positions, self.ends, self.sums, self._moved = (
+                like.positions,
+                like.ends,
+                like.sums,
+                like._moved,
+            )
         n_kept = plan.settings.steps // plan.settings.every + 1
         # Times run fastest: extremes over them, and filters, read memory in order.
-        self._motion = np.zeros((self._rows[0].shape[0], n_kept))
+        self._motion = np.zeros((self.sums.count - len(self.positions), n_kept))
         self._acceleration = np.zeros((len(self.positions), n_kept))
 
     def _read_rows(self, plan: Plan) -> None:
@@ -75,34 +71,32 @@ class LineHistories:
         values, slopes = path.rows(self.positions, system.size), path.rows(self.ends, system.size, 1)
         twists = twist_rows(plan.crossing.structure, self.positions)
         both = sp.csr_array(sp.vstack([values, slopes, twists]))
-        free = sp.csc_array(both[:, system.free])
-        self.free_dofs = np.unique(free.nonzero()[1]).astype(np.int64)
-        n = len(self.positions)
-        compact = sp.csr_array(free[:, self.free_dofs])
+        n, free = len(self.positions), sp.csr_array(both[:, system.free])
+        none = sp.csr_array(free.shape)
+        of_acceleration = Sums.of_blocks(none[:n], none[:n], free[:n])
+        self.sums = Sums.together([Sums.of_blocks(free, none, none), of_acceleration])
         moved = sp.csr_array(both[:, system.prescribed[plan.moving]])
-        self._rows = _operand(compact), _operand(sp.csr_array(compact[:n]))
         self._moved = moved, moved[:n]
 
-    def look(self, steps: IntArray, near: FloatArray, positions: FloatArray, forces: FloatArray) -> None:
-        """Look at consecutive steps: ``near`` (3, n_step, n_free) of ``free_dofs``."""
+    def look(self, steps: IntArray, sums: FloatArray) -> None:
+        """Look at consecutive steps: values (n_step, n_sum) of :attr:`sums`."""
         if not len(self.positions):
             return
-        every = self._plan.settings.every
+        every, n = self._plan.settings.every, len(self._motion)
         kept = slice(int(-steps[0] % every), None, every)
         first = int(-(-steps[0] // every))
         into = slice(first, first + len(steps[kept]))
-        self._motion[:, into] = self._values(0, "value", steps[kept], near[0, kept])
-        self._acceleration[:, into] = self._values(1, "acceleration", steps[kept], near[2, kept])
-
-    def _values(self, which: int, name: str, steps: IntArray, near: FloatArray) -> FloatArray:
-        """Values (n_row, n_step) of rows at consecutive or every n-th step."""
-        rows = self._rows[which]
-        values = (near @ rows.T).T if isinstance(rows, np.ndarray) else np.asarray(rows @ near.T)
+        self._motion[:, into] = sums[kept, :n].T
+        self._acceleration[:, into] = sums[kept, n:].T
         if len(self._plan.moving):
-            times, motions = self._plan.times_of(steps), self._plan.crossing.structure.system.motions
-            own = np.array([getattr(motions[j], name)(times) for j in self._plan.moving])
-            values = values + self._moved[which] @ own
-        return values
+            self._motion[:, into] += self._of_supports(0, "value", steps[kept])
+            self._acceleration[:, into] += self._of_supports(1, "acceleration", steps[kept])
+
+    def _of_supports(self, which: int, name: str, steps: IntArray) -> FloatArray:
+        """What supports that move add (n_row, n_step)."""
+        times, motions = self._plan.times_of(steps), self._plan.crossing.structure.system.motions
+        own = np.array([getattr(motions[j], name)(times) for j in self._plan.moving])
+        return np.asarray(self._moved[which] @ own)
 
     def histories(self, n: int) -> dict[str, FloatArray]:
         """The first n kept, by their names in a result; empty if nothing was asked for."""

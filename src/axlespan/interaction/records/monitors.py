@@ -175,7 +175,7 @@ class BalanceMonitor:
         """What the structure carries (n_step,) of the wheels' forces: all of it, or less at its ends."""
         total = np.zeros(len(positions))
         for wheels, path in self._lifted:
-            total += path.loads(positions, forces, wheels, 1)[:, 0]
+            total += path.loads(positions, forces, wheels, 1, one_way=True)[:, 0]
         return total
 
     @property

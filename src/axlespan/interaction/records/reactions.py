@@ -145,5 +145,5 @@ class Reactions:
         """D_PX X: wheel loads that go straight into the supports."""
         total = np.zeros((len(positions), self._inertia.size))
         for wheels, path in self.paths:
-            total += path.loads(positions, forces, wheels, self._inertia.size)
+            total += path.loads(positions, forces, wheels, self._inertia.size, one_way=True)
         return total

@@ -33,7 +33,6 @@ from axlespan.interaction.records.sums import Sums
 from axlespan.interaction.records.tape import LaneTape
 from axlespan.interaction.records.watchers import Keeper, Watcher, Watchers
 from axlespan.interaction.result import Result
-from axlespan.interaction.sensors import as_weights
 from axlespan.interaction.settings import DAMPED_ALPHA
 
 FloatArray = npt.NDArray[np.float64]
@@ -77,11 +76,7 @@ class Recorder:
         n_contact, n_vehicle = plan.rows.n_contact, plan.fleet.matrices.size
         known = like if like is not None and like._reads_the_same(plan) else None
         self._sensor_rows: sp.csr_array = plan.sensor_rows() if known is None else known._sensor_rows
-        self._sensor_dofs: IntArray
-        self._sensor_weights: FloatArray
-        self._sensor_dofs, self._sensor_weights = (
-            self._sensors() if known is None else (known._sensor_dofs, known._sensor_weights)
-        )
+        self._sensor_sums: Sums = self._sensors() if known is None else known._sensor_sums
         self.reactions: Reactions = Reactions(plan, None if known is None else known.reactions)
         self.compatibility: CompatibilityMonitor = CompatibilityMonitor()
         self.energy = EnergyMonitor(plan, alone=like is None)
@@ -90,7 +85,7 @@ class Recorder:
         self.sections, self.stresses = SectionHistories(plan), StressHistories(plan)
         self.envelopes = EnvelopeMonitor(plan)
         self.line: LineHistories = LineHistories(plan, None if known is None else known.line)
-        self._keepers: tuple[Keeper, ...] = (self.sections, self.stresses, self.envelopes, self.line)
+        self._keepers: tuple[Keeper, ...] = (self.sections, self.stresses, self.envelopes)
         self.balance: BalanceMonitor = BalanceMonitor(
             plan, self.reactions.paths, None if known is None else known.balance
         )
@@ -111,28 +106,32 @@ class Recorder:
         self.inertial_dofs: IntArray = np.unique(np.concatenate(inertial)).astype(np.int64)
         self.more_checks: Callable[[], Mapping[str, Any]] | None = None
         self.more_facts: Callable[[], Mapping[str, Any]] | None = None
-        n_sensor = len(self._sensor_dofs)
+        n_sensor = self._sensor_rows.shape[0]
         self.histories = Histories(
-            np.zeros((n_kept, n_contact)),
+            _forces(plan, n_kept),
             np.zeros((n_kept, n_contact)),
             {name: np.zeros((n_kept, n_vehicle)) for name in _QUANTITIES},
             {name: np.zeros((n_kept, n_sensor)) for name in _QUANTITIES},
             np.zeros((n_kept, len(plan.crossing.structure.system.prescribed))),
         )
-        parts = [self.balance.sums, self.reactions.sums]
+        parts = [self.balance.sums, self.reactions.sums, self._sensor_sums, self.line.sums]
         self.sums: Sums = Sums.together(parts) if known is None else known.sums
-        own = self._sensor_dofs.ravel()
-        more = [keeper.free_dofs for keeper in self._keepers]
-        self.selected = np.unique(np.concatenate([own, *more])).astype(np.int64)
-        self._inverse, *self._more = (np.searchsorted(self.selected, dofs) for dofs in (own, *more))
+        self._ends = np.cumsum([part.count for part in parts]).tolist()
+        own = [keeper.free_dofs for keeper in self._keepers]
+        self.selected = np.unique(np.concatenate(own)).astype(np.int64)
+        self._own = [np.searchsorted(self.selected, dofs) for dofs in own]
         self._gathering = Gathering()
         # Nonlinear couplings set things anew from step to step, which must be read in time.
         self._at_once = plan.is_nonlinear
         self.completed = 0  # time index of the last good step
         self.finite = True
 
-    def _sensors(self) -> tuple[IntArray, FloatArray]:
-        return as_weights(sp.csr_array(self._sensor_rows[:, self.plan.crossing.structure.system.free]))
+    def _sensors(self) -> Sums:
+        """Displacements, then velocities, then accelerations of all sensors."""
+        rows = sp.csr_array(self._sensor_rows[:, self.plan.crossing.structure.system.free])
+        none = sp.csr_array(rows.shape)
+        blocks = ((rows, none, none), (none, rows, none), (none, none, rows))
+        return Sums.together([Sums.of_blocks(*of) for of in blocks])
 
     def _reads_the_same(self, plan: Plan) -> bool:
         own, other = self.plan.settings, plan.settings
@@ -225,15 +224,16 @@ class Recorder:
 
     def _take(self, steps: IntArray, positions: FloatArray, tape: LaneTape) -> None:
         """Move what is asked for into the histories."""
-        values = tape.near[:, :, self._inverse]
-        at_sensors = values.reshape(3, len(steps), *self._sensor_dofs.shape)
-        sensors = (at_sensors * self._sensor_weights).sum(axis=3) + self._moved_sensors(steps)
-        own = self.balance.sums.count
-        reactions = self.reactions.of(steps, tape.sums[:, own:], positions, tape.forces)
-        self.balance.look(steps, tape.sums[:, :own], reactions, positions, tape.forces)
+        first, second, third, _ = self._ends
+        reactions = self.reactions.of(steps, tape.sums[:, first:second], positions, tape.forces)
+        self.balance.look(steps, tape.sums[:, :first], reactions, positions, tape.forces)
+        n_sensor = self._sensor_rows.shape[0]
+        sensors = tape.sums[:, second:third].reshape(len(steps), 3, n_sensor).transpose(1, 0, 2)
+        sensors = sensors + self._moved_sensors(steps)
+        self.line.look(steps, tape.sums[:, third:])
         self.tension.look(steps, positions, tape.forces)
         self.noise.look(tape.forces)
-        for keeper, at in zip(self._keepers, self._more, strict=True):
+        for keeper, at in zip(self._keepers, self._own, strict=True):
             own_near = tape.near if len(at) == len(self.selected) else tape.near[:, :, at]
             keeper.look(steps, own_near, positions, tape.forces)
         for step in [step for step in self.released if step < steps[-1]]:
@@ -244,7 +244,9 @@ class Recorder:
         kept = slice(first * self.every - int(steps[0]), None, self.every)
         into = slice(first, first + len(steps[kept]))
         h = self.histories
-        h.contact_force[into], h.contact_position[into] = tape.forces[kept], positions[kept]
+        h.contact_position[into] = positions[kept]
+        if h.contact_force.flags.writeable:
+            h.contact_force[into] = tape.forces[kept]
         h.support_reaction[into] = reactions[kept]
         for i, name in enumerate(_QUANTITIES):
             if h.vehicle[name].size:
@@ -256,9 +258,9 @@ class Recorder:
     def _moved_sensors(self, steps: IntArray) -> FloatArray:
         """What supports that move add at the sensors (3, n_step, n_sensor): E_P u_P and its rates."""
         plan = self.plan
-        if not len(plan.moving) or not len(self._sensor_dofs):
-            return np.zeros((3, 1, len(self._sensor_dofs)))
-        result = np.zeros((3, len(steps), len(self._sensor_dofs)))
+        if not len(plan.moving) or not self._sensor_rows.shape[0]:
+            return np.zeros((3, 1, self._sensor_rows.shape[0]))
+        result = np.zeros((3, len(steps), self._sensor_rows.shape[0]))
         times = plan.times_of(steps)
         rows = self._sensor_rows[:, plan.crossing.structure.system.prescribed[plan.moving]]
         for i, name in enumerate(("value", "velocity", "acceleration")):
@@ -330,6 +332,13 @@ class Recorder:
             "static_contact_force": by_contact(self.plan.fleet.weight),
             **_of(self.more_checks),
         }
+
+
+def _forces(plan: Plan, n_kept: int) -> FloatArray:
+    """Room for contact forces (n_kept, n_contact); those of moving forces alone stay as they are."""
+    if len(plan.fleet.coupled):
+        return np.zeros((n_kept, plan.rows.n_contact))
+    return np.broadcast_to(plan.fleet.weight, (n_kept, plan.rows.n_contact))
 
 
 def _of(source: Callable[[], Mapping[str, Any]] | None) -> Mapping[str, Any]:

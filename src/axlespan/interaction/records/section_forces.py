@@ -131,7 +131,7 @@ class SectionForces:
         """Add G X (n_row, n_step) of the wheels in the elements of the sections."""
         for wheels, path in self._influences:
             before = -_OVER * (path.stop - path.start)
-            total += path.loads(positions, forces, wheels, len(total), before).T
+            total += path.loads(positions, forces, wheels, len(total), before, one_way=True).T
 
 
 class SectionHistories:

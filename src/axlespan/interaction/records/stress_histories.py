@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
@@ -19,6 +21,16 @@ class StressHistories:
 
     def __init__(self, plan: Plan) -> None:
         self._plan, wanted = plan, plan.settings.stresses
+        self.names: tuple[str, ...] = ()
+        self.free_dofs: IntArray = np.empty(0, dtype=np.int64)
+        n_kept = plan.settings.steps // plan.settings.every + 1
+        self._table = np.zeros((n_kept, 0))
+        if wanted:
+            self._read_rows(wanted)
+            self._table = np.zeros((n_kept, len(self.names)))
+
+    def _read_rows(self, wanted: Sequence[str]) -> None:
+        plan = self._plan
         system = plan.crossing.structure.system
         structure, settings = plan.crossing.structure, plan.settings
         groups = by_line(structure, wanted, settings.sensors, settings.sensor_lines)
@@ -33,8 +45,6 @@ class StressHistories:
         self.free_dofs = np.unique(free.nonzero()[1]).astype(np.int64)
         self._rows = sp.csr_array(free[:, self.free_dofs])
         self._moved = sp.csr_array(found.rows[:, system.prescribed[plan.moving]])
-        n_kept = plan.settings.steps // plan.settings.every + 1
-        self._table = np.zeros((n_kept, len(self.names)))
 
     def look(self, steps: IntArray, near: FloatArray, positions: FloatArray, forces: FloatArray) -> None:
         """Look at consecutive steps: ``near`` (3, n_step, n_free) of ``free_dofs``."""

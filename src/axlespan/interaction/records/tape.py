@@ -105,14 +105,15 @@ class Tape:
         """Forces (n_contact,) of the last step."""
         return self._forces[self.filled - 1, contacts].copy()
 
-    def of(self, lane: int, dofs: IntArray, vehicle_dofs: slice, contacts: slice) -> LaneTape:
-        """The tape of one crossing: some watched d.o.f. (n_selected,), its vehicles' d.o.f. and contacts."""
+    def of(self, lane: int, dofs: IntArray, vehicle_dofs: slice, contacts: slice, own: slice) -> LaneTape:
+        """The tape of one crossing: some watched d.o.f. (n_selected,), its vehicles' d.o.f. and contacts, its own sums."""
         n = self.filled
         at, reading = np.searchsorted(self.watched.dofs, dofs), self.watched.reading
         width = len(self._flat) // self._lanes
         near = self._near[:n, :, lane * width : (lane + 1) * width]
-        sums, weights = self._sums[:n, :, lane], self.watched.sums_reading
+        sums, weights = self._sums[:n, own, lane], self.watched.sums_reading
         if weights is not None:
+            weights = weights[own]
             sums = near.reshape(n, 3 * width) @ weights.reshape(len(weights), 3 * width).T
         if reading is not None:
             near = near @ reading[at].T

@@ -31,6 +31,7 @@ from axlespan.vehicles import Train
 # Structures, trains, irregularities and validated parts of cases that a worker keeps.
 _STRUCTURES: Final = 8
 _TRAINS: Final = 64
+_PLANS: Final = 16  # of one structure; each holds the irregularity that it was made with
 _SURFACES: Final = 8
 _PARTS: Final = 256
 
@@ -46,7 +47,7 @@ class _Site:
     """A structure, and plans of trains across it by the keys of the trains."""
 
     made: BuiltStructure
-    plans: Kept[Plan] = field(default_factory=lambda: Kept(_TRAINS))
+    plans: Kept[Plan] = field(default_factory=lambda: Kept(_PLANS))
 
     def like(self, trains: str) -> Plan | None:
         """A plan that has most in common with that of some trains; None if there is none yet."""
@@ -81,12 +82,9 @@ class Builder:
             f"{keys['train']} {keys.get('other_trains')} {case.analysis.gravity} {case.analysis.vehicles}"
         )
         surfaces = self._surfaces_key(data, keys)
-        known = Known(
-            site.made,
-            *self._trains.values.get(trains, (None, ())),
-            self._surfaces.values.get(surfaces),
-            site.like(trains) or self._latest,
-        )
+        made, of_trains = self._trains.values.get(trains, (None, ()))
+        like = site.like(trains) or self._latest
+        known = Known(site.made, made, of_trains, self._surfaces.values.get(surfaces), like)
         lasting = None if self.recipe.passage is None else self._steps(case)
         built = build(loaded, known, lasting=lasting)
         crossing, others = built.crossing, built.crossing.others
