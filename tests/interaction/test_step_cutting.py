@@ -305,7 +305,7 @@ def test_the_memory_of_elements_is_that_of_completed_parts():
 
 
 def test_what_is_said_of_cuts():
-    result = asp.simulate(careful(), time_step=DT, steps=300)
+    result = asp.simulate(careful(), time_step=DT, steps=120)
     (note,) = (note for note in result.facts["notes"] if "converge" in note)
     count, shortest = result.facts["cut_steps"], result.facts["smallest_time_step"]
     first = np.flatnonzero(result.facts["parts_of_steps"] > 1)[:4] + 1
@@ -316,7 +316,7 @@ def test_what_is_said_of_cuts():
     assert content["computation"]["cut_steps"] == count
     assert content["computation"]["smallest_time_step_s"] == shortest
     assert any(f"{count} steps cut" in line for line in summary_lines(content))
-    plain = asp.simulate(careful(1.0), time_step=DT, steps=300)
+    plain = asp.simulate(careful(1.0), time_step=DT, steps=120)
     assert plain.facts["cut_steps"] == 0 and "smallest_time_step" not in plain.facts
     assert not any("converge" in note for note in plain.facts["notes"])
     assert not any("cut" in line for line in summary_lines(summary(plain)))
@@ -337,7 +337,7 @@ def test_not_even_the_smallest_part_converges():
     assert result.facts["cut_steps"] > 0
     with pytest.raises(AnalysisError, match=r"in 2 parts of 0\.0005 s"):
         asp.simulate(tight, time_step=DT, steps=600, cuts=1)
-    more = asp.simulate(tight, time_step=DT, steps=100, cuts=8)
+    more = asp.simulate(tight, time_step=DT, steps=60, cuts=8)
     assert more.facts["smallest_time_step"] < DT / 16
 
 

@@ -165,6 +165,8 @@ class PolynomialPath:
         ``shift`` [m] is added to the positions. Wheels that run one way are left out where they never come by.
         """
         total = np.zeros((len(positions), n))
+        if not n:  # a structure without supports has none of their d.o.f.
+            return total
         if one_way and len(positions):
             ends = positions[[0, -1]][:, wheels] + shift
             wheels = wheels[(ends.max(axis=0) >= self.start) & (ends.min(axis=0) <= self.stop)]

@@ -341,18 +341,18 @@ def take_fleet(fleet: Any, late: Any, tape: Any, k: int) -> None:
 @as_compiled
 def write(lanes: Any, state: Any, tape: Any, k: int) -> None:
     """Write down what is watched of the structure after a step: d.o.f., and sums over all."""
-    near, rows, _, _, sums, (into_sum, of, ends, at, values), lane = tape
+    near, rows, _, _, sums, (into_sum, of, ends, at, values, room), lane = tape
     u, v, a = state
     L = np.uint64(len(lanes))
     n = len(rows)
-    used = min(len(lanes), sums.shape[2] - lane)
+    used = min(len(lanes), sums.shape[0] - lane)
     for c in range(used):
         into = (lane + c) * n
         for i in range(n):
             where = np.uint64(rows[i]) * L + np.uint64(c)
             near[k, 0, into + i], near[k, 1, into + i], near[k, 2, into + i] = u[where], v[where], a[where]
-    sums[k, :, lane : lane + used] = 0.0
-    sum_of_four = np.zeros(len(lanes))
+    for s in range(len(room)):
+        room[s] = 0.0
     for s in range(len(of)):
         source = u if of[s] == 0 else (v if of[s] == 1 else a)
         t0 = scaled(0.0, read(lanes, u, np.uint64(0)))  # four sums that do not wait for one another
@@ -366,6 +366,8 @@ def write(lanes: Any, state: Any, tape: Any, k: int) -> None:
         while more < ends[s + 1]:
             t0 = plus(t0, values[more], read(lanes, source, at[more] * L))
             more += 1
-        put(sum_of_four, np.uint64(0), plus(plus(t0, 1.0, t1), 1.0, plus(t2, 1.0, t3)))
-        for c in range(used):
-            sums[k, into_sum[s], lane + c] += sum_of_four[c]
+        into = np.uint64(into_sum[s]) * L
+        put(room, into, plus(plus(plus(t0, 1.0, t1), 1.0, plus(t2, 1.0, t3)), 1.0, read(lanes, room, into)))
+    for c in range(used):
+        for s in range(sums.shape[1]):
+            sums[lane + c, s, k] = room[s * len(lanes) + c]

@@ -61,7 +61,7 @@ class FusedMarch:
         blocks = [slice(a, b) for a, b in pairwise(ends)]
         self._chunks = chunks_of(body, (convoy.coupled, convoy.vehicle_dofs, blocks), _CHUNK, _WORTH_A_CHUNK)
         self._watched = body.rank[convoy.tape.watched.dofs]
-        self._sums = _pieces(convoy.tape.watched.sums, body.rank)
+        self._sums = _pieces(convoy.tape.watched.sums, body.rank, _CHUNK)
         for chunk in self._chunks:
             chunk.take(convoy.structure)
         self._stretch: Stretch | None = None
@@ -221,8 +221,8 @@ def _padded(blocks: Blocks, parts: int) -> tuple[IntArray, IntArray, IntArray, F
 
 
 def _pieces(
-    sums: Sums, rank: IntArray
-) -> tuple[IntArray, IntArray, IntArray, npt.NDArray[np.uint64], FloatArray]:
-    """Weighted sums over the structure, as the loop wants them: sums, quantities, ends, rows, weights."""
+    sums: Sums, rank: IntArray, width: int
+) -> tuple[IntArray, IntArray, IntArray, npt.NDArray[np.uint64], FloatArray, FloatArray]:
+    """Weighted sums over the structure, as the loop wants them: sums, quantities, ends, rows, weights; and room."""
     row, which, ends, dofs, weights = sums.pieces()
-    return row, which, ends, rank[dofs].astype(np.uint64), weights
+    return row, which, ends, rank[dofs].astype(np.uint64), weights, np.zeros(sums.count * width)

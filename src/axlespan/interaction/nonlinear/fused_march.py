@@ -73,19 +73,12 @@ class NonlinearMarch(FusedMarch):
         body = convoy.prepared.banded
         assert body is not None
         self._columns = field.columns(convoy.structure)
-        columns = self._columns
-        self._springs = (
-            (springs.kinds, springs.numbers, springs.points),
-            body.rank[columns.dofs],
-            columns.weights,
-            columns.values,
-            columns.at,
-            columns.there,
-        )
+        self._coded = (springs.kinds, springs.numbers, springs.points)
+        self._at = body.rank[self._columns.dofs]
         self._slowest, self._vehicles = np.zeros(LIMIT), self._vehicle_blocks()
         self._work = _room(len(coupling.laws.rigid), field.n)
         self._follows = True  # whether the loop stands where the bodies stand, or is ahead of them
-        columns.need(field.active)
+        self._columns.need(field.active)
 
     def _vehicle_blocks(self) -> tuple[IntArray, IntArray, FloatArray]:
         """Where wheels of each vehicle begin, and compliance of vehicles by themselves, one block after the other."""
@@ -172,6 +165,7 @@ class NonlinearMarch(FusedMarch):
         """Make steps in the compiled loop; the first one that is not made, why, and the spring whose column it needs."""
         convoy, chunk, coupling, field = self._convoy, self._chunk, self._coupling, self._coupling.field
         near, vehicles, forces, sums = convoy.tape.arrays
+        columns = self._columns
         self._follow()
         forced = external is not None or bool(len(stretch.forced)) or self._numbers[3] != 0.0
         approaches = np.stack([coupling.approach, coupling.before, coupling.earlier])
@@ -200,7 +194,7 @@ class NonlinearMarch(FusedMarch):
                 self._apart,
                 coupling.scale,
             ),
-            self._springs,
+            (self._coded, self._at, columns.weights, columns.values, columns.at, columns.slot),
             (last, counts, history, flown),
             (self._slowest, most),
             self._work,

@@ -14,7 +14,6 @@ from axlespan.dynamics.integrator import Integrator
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
-Mask = npt.NDArray[np.bool_]
 
 # Springs next to one another that are solved for together: where one deviates, its neighbors soon will.
 _BLOCK = 32
@@ -41,35 +40,42 @@ class SpringColumns:
         # Rows of B, filled up with zeros: d.o.f. and weights (n_spring, n_local), places in a column.
         self.dofs, self.weights = padded(rows)
         self.at = self.place[self.dofs]
-        # (1+α) β Δt² A⁻¹ Bᵀ [m/N], column after column, as far as they are there.
-        self.values = np.zeros((rows.shape[0], len(self._dofs)))
-        self.there: Mask = np.zeros(rows.shape[0], dtype=bool)
+        # (1+α) β Δt² A⁻¹ Bᵀ [m/N], column after column, and which of them is that of a spring: -1 while it is not there.
+        self.values = np.zeros((0, len(self._dofs)))
+        self.slot = np.full(rows.shape[0], -1, dtype=np.int64)
+        self._used = 0
 
     def need(self, springs: IntArray) -> None:
         """Have the columns of some springs at hand."""
-        missing = springs[~self.there[springs]]
+        missing = springs[self.slot[springs] < 0]
         for block in np.unique(missing // _BLOCK).tolist():
-            self._solve(slice(block * _BLOCK, min((block + 1) * _BLOCK, len(self.there))))
+            self._solve(slice(block * _BLOCK, min((block + 1) * _BLOCK, len(self.slot))))
 
     def _solve(self, some: slice) -> None:
         integrator = self._integrator
         loads = np.zeros((integrator.size, some.stop - some.start))
         entries = self._rows[some].tocoo()
         loads[entries.col, entries.row] = integrator.weight_c * integrator.u_from_a * entries.data
-        self.values[some] = integrator.factor.solve(loads, out=loads)[self._dofs].T
-        self.there[some] = True
+        into = slice(self._used, self._used + loads.shape[1])
+        if into.stop > len(self.values):
+            more = np.zeros((max(into.stop, 2 * len(self.values)), len(self._dofs)))
+            more[: self._used] = self.values[: self._used]
+            self.values = more
+        self.values[into] = integrator.factor.solve(loads, out=loads)[self._dofs].T
+        self.slot[some] = np.arange(into.start, into.stop)
+        self._used = into.stop
 
     def between(self, springs: IntArray) -> FloatArray:
         """Compliance (n, n) between some springs, symmetric [m/N]."""
         self.need(springs)
-        chosen = self.values[springs[:, None, None], self.at[springs]]  # (n, n, n_local)
+        chosen = self.values[self.slot[springs][:, None, None], self.at[springs]]  # (n, n, n_local)
         half = np.einsum("ijk,jk->ij", chosen, self.weights[springs])
         return np.asarray(0.5 * (half + half.T))
 
     def under(self, dofs: IntArray, weights: FloatArray, springs: IntArray) -> FloatArray:
         """Compliance (n_wheel, n) between wheels with rows (n_wheel, n_local) of d.o.f. and some springs [m/N]."""
         self.need(springs)
-        chosen = self.values[springs[:, None, None], self.place[dofs]]  # (n, n_wheel, n_local)
+        chosen = self.values[self.slot[springs][:, None, None], self.place[dofs]]  # (n, n_wheel, n_local)
         return np.asarray(np.einsum("ijk,jk->ji", chosen, weights))
 
 

@@ -129,7 +129,7 @@ def assemble(
     Or -1, and the spring whose column is not there, counted from one; zero: there are too many.
     """
     contacts, matrices = system
-    B, columns, at, there = springs[2], springs[3], springs[4], springs[5]
+    B, columns, at, slot = springs[2], springs[3], springs[4], springs[5]
     S, names = rooms[0], rooms[2]
     w = len(contacts)
     for i in range(w):
@@ -139,7 +139,7 @@ def assemble(
     n = w
     for s in range(len(active)):
         if active[s]:
-            if not there[s]:
+            if slot[s] < 0:
                 return -1, s + 1
             if n - w == LARGEST:
                 return -1, 0
@@ -148,7 +148,7 @@ def assemble(
                 S[i, n] = S[n, i] = 0.0
             n += 1
     for c in range(w, n):
-        column = columns[names[c]]
+        column = columns[slot[names[c]]]
         for i in range(len(into)):
             total = 0.0
             for m in range(weights.shape[1]):

@@ -34,7 +34,7 @@ class Gathering:
 
     def add(self, steps: IntArray, positions: FloatArray, tape: LaneTape) -> bool:
         """Gather consecutive steps; whether these are enough."""
-        own = LaneTape(tape.near.copy(), tape.vehicles.copy(), tape.forces.copy(), tape.sums.copy())
+        own = LaneTape(tape.near.copy(), tape.vehicles.copy(), tape.forces.copy(), tape.sums.copy(order="K"))
         self._steps.append(steps)
         self._positions.append(positions)
         self._tapes.append(own)

@@ -71,7 +71,7 @@ class Tape:
         self._near = np.zeros((n_step, 3, len(self._flat)))
         self._vehicles = np.zeros((n_step, 3, n_vehicle_dof))
         self._forces = np.zeros((n_step, n_contact))
-        self._sums = np.zeros((n_step, self.watched.sums.count, self._lanes))
+        self._sums = np.zeros((self._lanes, self.watched.sums.count, n_step))  # times in one piece
 
     def take(self, structure: StructureBody, fleet: FleetBody | None, forces: FloatArray) -> None:
         """Write down the step just completed."""
@@ -83,7 +83,7 @@ class Tape:
             self._vehicles[k] = fleet.state.values
         self._forces[k] = forces
         if self.watched.sums_reading is None:
-            self._sums[k] = self.watched.sums.of(values).reshape(-1, self._lanes)
+            self._sums[:, :, k] = self.watched.sums.of(values).reshape(-1, self._lanes).T
         self.filled = k + 1
 
     @property
@@ -95,7 +95,7 @@ class Tape:
         """Whether all that is written is finite, and no contact force is so large."""
         n = self.filled
         with np.errstate(all="ignore"):  # a sum is finite only if everything in it is
-            parts = (self._near[:n], self._vehicles[:n], self._sums[:n])
+            parts = (self._near[:n], self._vehicles[:n], self._sums[:, :, :n])
             if not all(bool(np.isfinite(part.sum())) for part in parts if part.size):
                 return False
             forces = self._forces[:n]
@@ -111,7 +111,7 @@ class Tape:
         at, reading = np.searchsorted(self.watched.dofs, dofs), self.watched.reading
         width = len(self._flat) // self._lanes
         near = self._near[:n, :, lane * width : (lane + 1) * width]
-        sums, weights = self._sums[:n, own, lane], self.watched.sums_reading
+        sums, weights = self._sums[lane, own, :n].T, self.watched.sums_reading
         if weights is not None:
             weights = weights[own]
             sums = near.reshape(n, 3 * width) @ weights.reshape(len(weights), 3 * width).T
