@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 from tests.study.sweep.conftest import STUDY
 
+from axlespan.standards import assess
 from axlespan.study.sweep import Study, building, validation
 from axlespan.study.sweep.building import Builder
+from axlespan.study.sweep.verdicts import verdict_row
 
 # speed runs fastest, then the train, then the structure
 SHARED = STUDY[: STUDY.index("vary:")].replace(
@@ -97,3 +99,21 @@ def test_warnings_of_a_train_are_told_each_time(study_file):
     first, second = (built(study, builder, number).warnings for number in (0, 5))
     assert first == second
     assert "vehicle 2 begins 3 m behind the first wheel of vehicle 1" in "".join(first)
+
+
+def test_verdicts_do_not_depend_on_who_was_judged_before(study_file, tmp_path):
+    text = SHARED.replace("vary:", "  assessment: {line_speed: 200 km/h}\nvary:").replace(
+        "line: 5}", "line: 5, envelopes: [moment]}"
+    )
+    study = Study.load(study_file(text))
+    study.run(tmp_path / "out")
+    table = study.table()
+    for number in (1, 6):
+        scenario = study.scenario(number)
+        alone = verdict_row(
+            assess(scenario.run(), scenario.built.crossing, scenario.case.assessment.wanted())
+        )
+        assert alone["verdict.dynamic_effect"] == "pass" and "verdict.dynamic_moment" in alone
+        for name, value in alone.items():
+            own = table.loc[number, name]
+            assert own == pytest.approx(value, rel=1e-9) if isinstance(value, float) else own == value

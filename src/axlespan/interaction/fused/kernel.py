@@ -28,12 +28,12 @@ _NOTHING, _ROWS = 1e-22, 16
 @as_compiled
 def forward(
     lanes: Any, width: Any, p: Any, late: Any, state: Any, x: Any, added: Any, reach: Any, K: Any, C: Any, damped: bool,
-    lower: Any, extra: Any, forced: bool, ring: Any, ahead: Any, completes: bool, goes_on: bool
+    lower: Any, extra: Any, acting: Any, ring: Any, ahead: Any, completes: bool, goes_on: bool
 ) -> None:  # fmt: skip
     """Complete the step before, if it was made, and begin the next one, if there is one: L y = right-hand side.
 
     ``state`` holds u, u̇, ü; ``x`` accelerations of the step before, then y; ``added`` is what contact adds from row
-    ``reach[0]`` to ``reach[1]``; ``ring`` predictions (1+α) ũ - α u and (1+α) ṽ - α u̇ of the latest rows.
+    ``reach[0]`` to ``reach[1]``, as ``extra`` forces do from ``acting[0]`` to ``acting[1]``; ``ring`` predictions (1+α) ũ - α u and (1+α) ṽ - α u̇ of the latest rows.
     """
     L, w, zero, one = np.uint64(len(lanes)), np.uint64(len(width)), np.uint64(0), np.uint64(1)
     u, v, a = state
@@ -45,6 +45,7 @@ def forward(
     dt, late_u, late_v, u_from_a, v_from_a = late
     u1, u2, u3, v2, v3 = p[2, 0], p[2, 1], p[2, 2], p[3, 1], p[3, 2]
     low, high = np.uint64(reach[0]), np.uint64(reach[1])
+    acts, rests = np.uint64(acting[0]), np.uint64(acting[1])
     rows = n + np.uint64(ahead) if goes_on else n
     none = scaled(0.0, read(lanes, u, zero))
     last = none
@@ -70,7 +71,7 @@ def forward(
             continue
         j = i - np.uint64(ahead)
         k = j + w
-        t = read(lanes, extra, j * L) if forced else none
+        t = read(lanes, extra, j * L) if acts <= j and j < rests else none
         for q in range(starts[j], starts[j + one]):
             t = plus(t, -entries[q], read(lanes, mean_u, (columns[q] & mask) * L))
         if damped:
@@ -181,18 +182,25 @@ def march(
     room = room_for(place.shape[1], place.shape[2])
     one_by_one = np.arange(len(known_forces))
     for k in range(first, stop):
+        acting = (0, n if forced and (k == 0 or factors.shape[1]) else 0)
         if forced:
+            low, high = add_load(known_place[k], known_weights[k], one_by_one, known_forces, -wc, 0, extra)
             if k > 0 and wp != 0.0:  # before the first step of a stretch, it is there already
-                add_load(place[k - 1], weights[k - 1], into, forces, -wp, 0, extra)
-                add_load(known_place[k - 1], known_weights[k - 1], one_by_one, known_forces, -wp, 0, extra)
-            add_load(known_place[k], known_weights[k], one_by_one, known_forces, -wc, 0, extra)
+                low_p, high_p = add_load(place[k - 1], weights[k - 1], into, forces, -wp, 0, extra)
+                low, high = min(low, low_p), max(high, high_p)
+                low_p, high_p = add_load(
+                    known_place[k - 1], known_weights[k - 1], one_by_one, known_forces, -wp, 0, extra
+                )
+                low, high = min(low, low_p), max(high, high_p)
+            if acting[1] == 0 and high >= low:
+                acting = (low // L, high // L + 1)
             for t in range(factors.shape[1]):
                 if factors[k, t] != 0.0:
                     for i in range(vectors.shape[1]):
                         for c in range(L):
                             extra[i * L + c] += factors[k, t] * vectors[t, i]
         forward(
-            lanes, width, p, late, state, x, added, reach, K, C, damped, lower, extra, forced, ring, ahead, k > first, True
+            lanes, width, p, late, state, x, added, reach, K, C, damped, lower, extra, acting, ring, ahead, k > first, True
         )  # fmt: skip
         if forced:
             if factors.shape[1] or k == 0:
@@ -227,7 +235,7 @@ def march(
                 reach[0], reach[1] = backward(lanes, width, lower, added, end, low), end
             take_fleet(fleet, late, tape, k)
     forward(
-        lanes, width, p, late, state, x, added, reach, K, C, damped, lower, extra, forced, ring, ahead, True, False
+        lanes, width, p, late, state, x, added, reach, K, C, damped, lower, extra, (0, 0), ring, ahead, True, False
     )  # fmt: skip
     write(lanes, state, tape, stop - 1)
     added[reach[0] * L + w : reach[1] * L + w] = 0.0

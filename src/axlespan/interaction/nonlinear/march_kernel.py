@@ -83,6 +83,7 @@ def march(
     active, values = room[0], room[2]
     laws = (wheel_laws, springs[0], (values, rate_from_e))
     for k in range(first, stop):
+        acting = (0, n if forced else 0)
         if forced:
             if k > first:  # before the first step, it is there already
                 for i in range(len(extra)):
@@ -97,7 +98,7 @@ def march(
                     for i in range(vectors.shape[1]):
                         extra[i] += factors[k, t] * vectors[t, i]
         forward(
-            lanes, width, p, late, state, x, added, reach, K, C, damped, lower, extra, forced, ring, ahead, k > first, True
+            lanes, width, p, late, state, x, added, reach, K, C, damped, lower, extra, acting, ring, ahead, k > first, True
         )  # fmt: skip
         if k > first:
             write(lanes, state, tape, k - 1)
@@ -144,7 +145,7 @@ def march(
         figures[1][1] = max(figures[1][1], n_unknown - len(system[0]))
         take_fleet(fleet, late, tape, k)
     forward(
-        lanes, width, p, late, state, x, added, reach, K, C, damped, lower, extra, forced, ring, ahead, stop > first, False
+        lanes, width, p, late, state, x, added, reach, K, C, damped, lower, extra, (0, 0), ring, ahead, stop > first, False
     )  # fmt: skip
     write(lanes, state, tape, stop - 1)
     _clear(added, reach, shift)

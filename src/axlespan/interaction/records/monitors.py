@@ -19,7 +19,7 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 # Steps at which the energy of a run is balanced: many of a small model, a few of a large one.
-_ENERGY_SAMPLES, _FEWEST_SAMPLES, _SAMPLED_DOFS = 128, 8, 100_000
+_ENERGY_SAMPLES, _FEWEST_SAMPLES, _BESIDE_OTHERS, _SAMPLED_DOFS = 128, 8, 4, 100_000
 
 
 # Smallest displacement [m] that a compatibility residual is related to.
@@ -281,8 +281,8 @@ class EnergyMonitor:
         self.inner_of_fleet: Callable[[], FloatArray | None] | None = None
         self._inner_before: FloatArray | None = None
         steps = plan.settings.steps
-        most = _ENERGY_SAMPLES if alone else _FEWEST_SAMPLES  # one of many is one of the same kind
-        count = max(_FEWEST_SAMPLES, min(most, _SAMPLED_DOFS // plan.structure.size))
+        count = max(_FEWEST_SAMPLES, min(_ENERGY_SAMPLES, _SAMPLED_DOFS // plan.structure.size))
+        count = count if alone else _BESIDE_OTHERS  # one of many is one of the same kind
         count = plan.settings.energy_samples or count
         spread = np.unique(np.linspace(1, steps, min(count, steps)).astype(int)).tolist()
         self._samples = set(spread if samples is None else samples)
