@@ -182,3 +182,14 @@ def test_bad_requests_are_refused_with_the_rule(make, message):
     with pytest.raises(InputError) as caught:
         make()
     assert message in str(caught.value)
+
+
+@pytest.mark.parametrize("method", ["fft", "cosines"])
+def test_many_values_at_a_time_are_those_of_a_few(method: str) -> None:
+    """Over several periods, before and behind the origin, right on points and between them."""
+    profile = ir.realize("german-low", 40.0, seed=3, method=method)
+    x = np.concatenate([np.linspace(-130.0, 170.0, 3001), profile.spacing * np.arange(-50.0, 50.0)])
+    few = np.concatenate([profile.value(x[i : i + 100]) for i in range(0, len(x), 100)])
+    many = profile.value(x.reshape(-1, 7)) if len(x) % 7 == 0 else profile.value(x)
+    assert np.abs(few).max() > 1e-4
+    np.testing.assert_allclose(many.ravel(), few, rtol=1e-11, atol=1e-15)

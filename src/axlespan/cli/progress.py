@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
-from axlespan.linalg.compiled import when_compiling
+from axlespan.compiled import when_compiling
 
 # Characters: of the bar, of a title below which it says nothing, and of all numbers but those of the steps.
 _BAR, _FEWEST, _NUMBERS = 24, 8, 38

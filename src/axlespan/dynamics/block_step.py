@@ -14,8 +14,8 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
 
+from axlespan.compiled import Loop, compiled, numba_is_there
 from axlespan.dynamics.integrator import Integrator, State, Stepper
-from axlespan.linalg.compiled import Loop, compiled, numba_is_there
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

@@ -20,9 +20,9 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
 
+from axlespan.compiled import Loop
 from axlespan.dynamics.alpha import Alpha
 from axlespan.dynamics.step_kernel import compiled_completion, compiled_reading, compiled_right_side
-from axlespan.linalg.compiled import Loop
 from axlespan.linalg.factor import Factor, factorize
 from axlespan.linalg.low_rank import LowRank, UpdatedFactor
 from axlespan.linalg.products import Parts, half_of, whole_of

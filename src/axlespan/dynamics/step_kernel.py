@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from axlespan.linalg.compiled import Loop, compiled
+from axlespan.compiled import Loop, compiled
 
 
 @cache

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg.blas import daxpy
 
-from axlespan.linalg.compiled import Loop, compiled
+from axlespan.compiled import Loop, compiled
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

@@ -10,6 +10,7 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from axlespan.compiled import numba_is_there
 from axlespan.errors import InputError
 from axlespan.irregularity.checks import Array, require_band, require_choice, require_positive
 from axlespan.irregularity.hermite import quintic
@@ -30,6 +31,8 @@ _FEWEST_TERMS = 128
 _LARGEST_TABLE = 1 << 23
 # Points that are interpolated at once; keeps the temporaries in cache.
 _BLOCK = 1 << 16
+# So many positions at a time are worth machine code.
+_MANY = 256
 
 
 @dataclass(frozen=True)
@@ -175,6 +178,12 @@ class Realization:
         return np.stack([self._row(order) for order in (0, 1, 2)])
 
     @cached_property
+    def _scaled_table(self) -> Array:
+        """Value, slope and curvature (n_point + 1, 3) times 1, h and h² of the distance h of the points."""
+        h = self.period / self._points
+        return np.ascontiguousarray((self._table * np.array([1.0, h, h * h])[:, None]).T)
+
+    @cached_property
     def _integral_table(self) -> Array:
         return np.stack([self._row(-1), *self._table[:2]])
 
@@ -197,6 +206,11 @@ class Realization:
         flat = x.ravel()
         out = np.empty(flat.size)
         points = self._points
+        if order == 0 and table is self._table and flat.size >= _MANY and numba_is_there():
+            from axlespan.irregularity.periodic_kernel import fill_values
+
+            fill_values(flat, self._scaled_table, self.period / points, self._sign, out)
+            return out.reshape(x.shape)
         h = self.period / points
         for i in range(0, flat.size, _BLOCK):
             u = flat[i : i + _BLOCK] / h

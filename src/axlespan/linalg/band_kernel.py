@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from axlespan.compiled import Loop, compiled
 from axlespan.linalg.arrays import FloatArray
-from axlespan.linalg.compiled import Loop, compiled
 
 # The widest half-bandwidth for which the loop over one right-hand side beats LAPACK (n = 5436; at 32, 108
 # against 180 µs; at 8, 30 against 120), and the step between the widths that are compiled.

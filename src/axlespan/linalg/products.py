@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
 
+from axlespan.compiled import Loop, compiled
 from axlespan.linalg.arrays import FloatArray
-from axlespan.linalg.compiled import Loop, compiled
 
 IndexArray = npt.NDArray[np.uint32]
 Parts = tuple[IndexArray | FloatArray, ...]

@@ -19,8 +19,8 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
 
+from axlespan.compiled import numba_is_there
 from axlespan.errors import InputError
-from axlespan.linalg.compiled import numba_is_there
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from axlespan.linalg.compiled import as_compiled
+from axlespan.compiled import as_compiled
 
 
 @as_compiled

@@ -8,10 +8,10 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
 
+from axlespan.compiled import numba_is_there
 from axlespan.dynamics.integrator import Integrator
 from axlespan.linalg.band_kernel import WIDEST, padded_width
 from axlespan.linalg.banded import BandedFactor
-from axlespan.linalg.compiled import numba_is_there
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from axlespan.compiled import as_compiled
 from axlespan.interaction.fused.banded_body import PIECE
 from axlespan.interaction.fused.lane_vectors import plus, read, scaled, times, total
-from axlespan.linalg.compiled import as_compiled
 
 _EIGHT = (0,) * PIECE
 

@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 
+from axlespan.compiled import as_compiled
 from axlespan.interaction.fused.banded_body import PIECE
 from axlespan.interaction.fused.contact_kernel import fill_system, pack_rows, room_for, solve_system
 from axlespan.interaction.fused.lane_vectors import plus, plus_size, put, read, scaled, total
-from axlespan.linalg.compiled import as_compiled
 
 _EIGHT = (0,) * PIECE
 # A response to contact that is so much smaller than its largest value is none; asked every so many rows.
@@ -33,7 +33,8 @@ def forward(
     """Complete the step before, if it was made, and begin the next one, if there is one: L y = right-hand side.
 
     ``state`` holds u, u̇, ü; ``x`` accelerations of the step before, then y; ``added`` is what contact adds from row
-    ``reach[0]`` to ``reach[1]``, as ``extra`` forces do from ``acting[0]`` to ``acting[1]``; ``ring`` predictions (1+α) ũ - α u and (1+α) ṽ - α u̇ of the latest rows.
+    ``reach[0]`` to ``reach[1]``, as ``extra`` forces do from ``acting[0]`` to ``acting[1]``; ``ring`` predictions
+    (1+α) ũ - α u and (1+α) ṽ - α u̇ of the latest rows.
     """
     L, w, zero, one = np.uint64(len(lanes)), np.uint64(len(width)), np.uint64(0), np.uint64(1)
     u, v, a = state

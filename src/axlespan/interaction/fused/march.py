@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
 
+from axlespan.compiled import Loop
 from axlespan.dynamics.block_step import Blocks, BlockStepper
 from axlespan.dynamics.integrator import State
 from axlespan.errors import AnalysisError
@@ -24,7 +25,6 @@ from axlespan.interaction.convoy import Convoy
 from axlespan.interaction.fused.banded_body import PIECE, BandedBody, csr_parts
 from axlespan.interaction.fused.chunk import Chunk, chunks_of
 from axlespan.interaction.records.sums import Sums
-from axlespan.linalg.compiled import Loop
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

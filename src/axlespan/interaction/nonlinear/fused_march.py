@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from axlespan.compiled import Loop
 from axlespan.interaction.contact_system import Stretch
 from axlespan.interaction.convoy import Convoy, Couple, Leaper
 from axlespan.interaction.fused.march import FusedMarch
@@ -25,7 +26,6 @@ from axlespan.interaction.nonlinear.law_codes import (
     CodedSprings,
     CodedWheels,
 )
-from axlespan.linalg.compiled import Loop
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from axlespan.compiled import as_compiled
 from axlespan.interaction.nonlinear.interface_solver import HALVINGS, LIMIT, ROUNDING, TOLERANCE
 from axlespan.interaction.nonlinear.law_codes import (
     HERTZ,
@@ -21,7 +22,6 @@ from axlespan.interaction.nonlinear.law_codes import (
     TABLE,
     UNILATERAL,
 )
-from axlespan.linalg.compiled import as_compiled
 
 # Vectors to work in: forces, free and found coordinates, the Newton step and where it starts, rates of springs; twice
 # residual, slope, whether a constraint holds, and coordinate.

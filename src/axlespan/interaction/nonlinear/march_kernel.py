@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from axlespan.compiled import as_compiled
 from axlespan.interaction.fused.kernel import (
     add_load,
     backward,
@@ -36,7 +37,6 @@ from axlespan.interaction.nonlinear.step_kernel import (
     solve_apart,
     solve_together,
 )
-from axlespan.linalg.compiled import as_compiled
 
 
 @as_compiled

@@ -19,11 +19,11 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
 
+from axlespan.compiled import Loop, numba_is_there
 from axlespan.errors import InputError
 from axlespan.interaction.nonlinear.law_codes import CodedSprings
 from axlespan.interaction.nonlinear.static_columns import StaticColumns
 from axlespan.interaction.plan import Plan
-from axlespan.linalg.compiled import Loop, numba_is_there
 from axlespan.linalg.factor import Factor
 from axlespan.model.motions import Constant
 from axlespan.model.nonlinear_elements import ElementLaw

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from axlespan.compiled import as_compiled
 from axlespan.interaction.nonlinear.interface_kernel import FORCE, FOUND, FREE, deviations, solve_interface
 from axlespan.interaction.nonlinear.law_codes import LARGEST, ONE_SIDED, RIGID, SPRING_ROWS, WHEEL_ROWS
-from axlespan.linalg.compiled import as_compiled
 
 # Rows of the springs' room: elongation and rate without new forces (read by the interface), deviation, elongation and
 # rate of the step, and three to work in.

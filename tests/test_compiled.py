@@ -5,22 +5,20 @@ import os
 
 import pytest
 
-from axlespan.linalg.compiled import as_compiled
+from axlespan.compiled import as_compiled
 
 pytest.importorskip("numba")
 
-INNER = (
-    "from axlespan.linalg.compiled import as_compiled\n\n@as_compiled\ndef half(x):\n    return {share} * x\n"
-)
+INNER = "from axlespan.compiled import as_compiled\n\n@as_compiled\ndef half(x):\n    return {share} * x\n"
 OUTER = (
-    "from inner_loop import half\nfrom axlespan.linalg.compiled import as_compiled\n\nSHIFT = {shift}\n\n"
+    "from inner_loop import half\nfrom axlespan.compiled import as_compiled\n\nSHIFT = {shift}\n\n"
     "@as_compiled\ndef loop(x):\n    return half(x) + SHIFT\n"
 )
 
 
 def load(folder, monkeypatch, share, shift):
     """Write two modules with the same time stamps as ever, import them anew, and call the outer loop."""
-    from axlespan.linalg import compiled
+    from axlespan import compiled
 
     compiled._fingerprint.cache_clear()
     modules = {}
