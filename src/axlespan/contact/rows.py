@@ -105,6 +105,14 @@ class TrainRows:
             result[:, path.wheels] = read(positions[:, path.wheels])
         return result
 
+    def dofs_passed(self, ends: FloatArray, wheels: IntArray) -> list[IntArray]:
+        """Free d.o.f. that some wheels load between two times, from their positions (2, n_contact), for each path."""
+        result = []
+        for path in self.paths:
+            here = wheels[np.isin(wheels, path.wheels)]
+            result.append(path.free.dofs_between(ends[:, here].min(axis=0), ends[:, here].max(axis=0)))
+        return result
+
     def rows(self, positions: FloatArray, wheels: IntArray, derivative: int = 0) -> RowBlock:
         """Rows for some wheels, at their positions (n_time, n_wheel), or derivatives along the line."""
         n_local = max(path.free.dofs.shape[1] for path in self.paths)

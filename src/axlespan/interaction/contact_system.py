@@ -17,13 +17,12 @@ import numpy.typing as npt
 import scipy.sparse as sp
 from scipy.linalg.lapack import dposv
 
-from axlespan.contact.rows import RowBlock
+from axlespan.contact.rows import RowBlock, TrainRows
 from axlespan.errors import AxlespanError
 from axlespan.interaction.bodies import FleetBody, StructureBody
 from axlespan.interaction.path_columns import PathColumns
 from axlespan.interaction.path_kernel import compiled_sandwich
 from axlespan.interaction.plan import Plan
-from axlespan.running.path import mark_used
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -40,10 +39,9 @@ class ContactSystemError(AxlespanError, ArithmeticError):
 class Rows:
     """The contact rows of one crossing for consecutive steps; all of it is known ahead."""
 
+    train: TrainRows
     positions: FloatArray  # (n_step, n_contact) [m]
     live: IntArray  # (n_live,) contacts that are on the structure at some step
-    dofs: IntArray  # (n_step, n_live, n_local) free d.o.f. of the structure
-    weights: FloatArray  # (n_step, n_live, n_local); zero off the structure
     gap: FloatArray  # (n_step, n_coupled) r + E_XP u_P [m]
     rank: IntArray  # (n_live,) place among the coupled contacts; -1 for moving forces
 
@@ -51,6 +49,25 @@ class Rows:
     def active(self) -> IntArray:
         """Which live contacts are coupled."""
         return np.flatnonzero(self.rank >= 0)
+
+    def at(self, steps: slice) -> RowBlock:
+        """The rows of the live contacts at some of the steps."""
+        return self.train.rows(self.positions[steps, self.live], self.live)
+
+    @cached_property
+    def block(self) -> RowBlock:
+        """The rows of the live contacts at all steps."""
+        return self.at(slice(None))
+
+    @property
+    def dofs(self) -> IntArray:
+        """Free d.o.f. (n_step, n_live, n_local) of the structure."""
+        return self.block.dofs
+
+    @property
+    def weights(self) -> FloatArray:
+        """Weights (n_step, n_live, n_local); zero off the structure."""
+        return self.block.weights
 
 
 def rows_of(plan: Plan, steps: IntArray) -> Rows:
@@ -64,25 +81,24 @@ def rows_of(plan: Plan, steps: IntArray) -> Rows:
     times = plan.times_of(steps)
     positions = plan.rows.positions(times)
     live = np.flatnonzero(plan.rows.on_structure(positions).any(axis=0))
-    block = plan.rows.rows(positions[:, live], live)
     rank = np.full(plan.rows.n_contact, -1, dtype=np.int64)
     rank[plan.fleet.coupled] = np.arange(len(plan.fleet.coupled))
-    gap = _gap(plan, times, positions, block, rank[live])
-    return Rows(positions, live, block.dofs, block.weights, gap, rank[live])
+    gap = _gap(plan, times, positions, live, rank[live])
+    return Rows(plan.rows, positions, live, gap, rank[live])
 
 
 def _nothing(plan: Plan, n_step: int) -> Rows:
-    none = np.empty(0, dtype=np.int64)
-    empty, gap = np.empty((n_step, 0, 1)), np.zeros((n_step, len(plan.fleet.coupled)))
-    return Rows(np.zeros((n_step, plan.rows.n_contact)), none, empty.astype(np.int64), empty, gap, none)
+    none, gap = np.empty(0, dtype=np.int64), np.zeros((n_step, len(plan.fleet.coupled)))
+    return Rows(plan.rows, np.zeros((n_step, plan.rows.n_contact)), none, gap, none)
 
 
-def _gap(plan: Plan, times: FloatArray, positions: FloatArray, block: RowBlock, rank: IntArray) -> FloatArray:
+def _gap(plan: Plan, times: FloatArray, positions: FloatArray, live: IntArray, rank: IntArray) -> FloatArray:
     """R + E_XP u_P (n_step, n_coupled) [m]."""
     if not len(plan.fleet.coupled):
         return np.zeros((len(times), 0))
     gap = plan.rows.irregularity(positions)[:, plan.fleet.coupled]
     if len(plan.moving):
+        block = plan.rows.rows(positions[:, live], live)
         motions = plan.crossing.structure.system.motions
         u_p = np.column_stack([motions[j].value(times) for j in plan.moving])
         moved = u_p[np.arange(len(times))[:, None, None], block.prescribed_dofs] * block.prescribed_weights
@@ -148,22 +164,21 @@ class Stretch:
     def rows(self, coupled: bool, steps: slice = slice(None)) -> WheelRows:
         """Rows of the coupled wheels, or of the moving forces, at some steps."""
         names = self.into if coupled else self.forced
-        n_local = max(rows.dofs.shape[2] for rows in self.crossings)
-        shape = (len(range(self.n_step)[steps]), len(names), n_local)
+        blocks = [rows.block if steps == slice(None) else rows.at(steps) for rows in self.crossings]
+        shape = (len(range(self.n_step)[steps]), len(names), max(block.dofs.shape[2] for block in blocks))
         flat, held, weights = np.zeros(shape, np.int64), np.zeros(shape, np.int64), np.zeros(shape)
         lanes, position, filled = self.structure.lanes, self.structure.columns.position, 0
-        for lane, rows in enumerate(self.crossings):
+        for lane, (rows, block) in enumerate(zip(self.crossings, blocks, strict=True)):
             which = np.flatnonzero((rows.rank >= 0) == coupled)
             if not len(which):
                 continue
-            dofs = rows.dofs[steps] if len(which) == len(rows.rank) else rows.dofs[steps, which]
+            all_of_them = len(which) == len(rows.rank)
+            dofs = block.dofs if all_of_them else block.dofs[:, which]
             here = (slice(None), slice(filled, filled + len(which)), slice(dofs.shape[2]))
             np.multiply(dofs, lanes, out=flat[here])
             flat[here] += lane
             held[here] = (position if lanes == 1 else position * lanes + lane)[dofs]
-            weights[here] = (
-                rows.weights[steps] if len(which) == len(rows.rank) else rows.weights[steps, which]
-            )
+            weights[here] = block.weights if all_of_them else block.weights[:, which]
             filled += len(which)
         return WheelRows(names, flat, held, weights)
 
@@ -221,10 +236,12 @@ def stretch_of(
     """
     steps = first + np.arange(n_step)
     crossings = [rows_of(plan, steps) for plan in plans]
-    mark = np.zeros(len(structure.columns.position), dtype=bool)  # of a reduced structure too
-    for rows in crossings:
-        mark_used(rows.dofs, rows.weights, mark)
-    structure.columns.hold(np.flatnonzero(mark))
+    if not structure.columns.is_whole:
+        mark = np.zeros(len(structure.columns.position), dtype=bool)  # of a reduced structure too
+        for rows in crossings:
+            for dofs in rows.train.dofs_passed(rows.positions[[0, -1]], rows.live):
+                mark[dofs] = True
+        structure.columns.hold(np.flatnonzero(mark))
     ranks = _offsets([len(plan.fleet.coupled) for plan in plans])
     parts = []
     if systems and fleet is not None:

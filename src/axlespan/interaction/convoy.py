@@ -154,8 +154,9 @@ class Convoy:
         line = stretch.gap[k].copy()
         if states is not None:
             for rows, state, own in zip(stretch.crossings, states, self.coupled, strict=True):
-                on = rows.active
-                line[own][rows.rank[on]] += (state.u[rows.dofs[k, on]] * rows.weights[k, on]).sum(axis=1)
+                on, block = rows.active, rows.at(slice(k, k + 1))
+                heights = (state.u[block.dofs[0, on]] * block.weights[0, on]).sum(axis=1)
+                line[own][rows.rank[on]] += heights
         elif len(stretch.into):
             rows_at = stretch.rows(True, slice(k, k + 1))
             line[stretch.into] += self.structure.gather(rows_at.flat[0], rows_at.held[0], rows_at.weights[0])

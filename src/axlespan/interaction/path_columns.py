@@ -76,6 +76,13 @@ class PathColumns:
         """Memory of the columns held [byte]."""
         return int(8 * self._filled * self.integrator.size + self.compliance.nbytes)
 
+    @property
+    def is_whole(self) -> bool:
+        """Whether all columns of the path are at hand."""
+        if self.solves_again:
+            return bool(self._there.all())
+        return self.solves_again is not None and len(self.held) == len(self.path_dofs)
+
     def for_others(self) -> PathColumns:
         """Columns of the same structure for other crossings, which go on by themselves."""
         return PathColumns(self.integrator, self.path_dofs, self._loaded)

@@ -42,15 +42,6 @@ def _loops() -> Any:
     return path_kernel
 
 
-def mark_used(dofs: IntArray, weights: FloatArray, mark: npt.NDArray[np.bool_]) -> None:
-    """Mark the d.o.f. (n,) that rows (..., n_local) give any weight."""
-    loops = _loops() if dofs.size >= _MANY else None
-    if loops is None:
-        mark[dofs[weights != 0.0]] = True
-    else:
-        loops.mark_used(dofs.reshape(-1), weights.reshape(-1), mark)
-
-
 @dataclass(frozen=True, eq=False)
 class PolynomialPath:
     """Weights of the d.o.f. along a path, one polynomial per segment and d.o.f."""
@@ -124,6 +115,21 @@ class PolynomialPath:
         result[~self.carries(position)] = 0.0
         return self.dofs[segment], result
 
+    def dofs_between(self, low: FloatArray, high: FloatArray) -> IntArray:
+        """D.o.f. with weights anywhere between positions low and high (n_range,) [m]."""
+        on = (high >= self.start) & (low <= self.stop)
+        first, last = (self.locate(np.clip(at[on], self.start, self.stop))[0] for at in (low, high))
+        covered = np.zeros(len(self.dofs) + 1, dtype=np.int64)
+        np.add.at(covered, first, 1)
+        np.add.at(covered, last + 1, -1)
+        there = np.cumsum(covered)[:-1] > 0
+        return np.asarray(self.dofs[there][self._used[there]])
+
+    @cached_property
+    def _used(self) -> npt.NDArray[np.bool_]:
+        """Which d.o.f. (n_segment, n_local) have any weight."""
+        return np.asarray(np.any(self.coefficients != 0.0, axis=2))
+
     def fill_rows(
         self,
         positions: FloatArray,
@@ -132,6 +138,7 @@ class PolynomialPath:
         dofs: IntArray,
         weights: FloatArray,
         derivative: int = 0,
+        numbers: IntArray | None = None,
     ) -> None:
         """Write the weights of some contacts that stand on the path, or derivatives along s, into places that hold zeros.
 
@@ -142,12 +149,20 @@ class PolynomialPath:
         contacts, slots : array (n_wheel,)
             Which of them, and their places in the arrays to fill.
         dofs, weights : array (n_step, n_slot, at least n_local)
+        numbers : array (n_segment, n_local), optional
+            What is written in place of the d.o.f.
         """
         loops = None if derivative or positions.shape[0] * len(contacts) < _MANY else _loops()
         if loops is not None:
-            loops.fill_rows(*self._table, np.ascontiguousarray(positions), contacts, slots, dofs, weights)
+            breaks, table, own_dofs = self._table
+            where = own_dofs if numbers is None else numbers
+            loops.fill_rows(
+                breaks, table, where, np.ascontiguousarray(positions), contacts, slots, dofs, weights
+            )
             return
         own_dofs, own = self.weights(positions[:, contacts], derivative)
+        if numbers is not None:
+            own_dofs = numbers[self.locate(positions[:, contacts])[0]]
         dofs[:, slots, : own.shape[2]], weights[:, slots, : own.shape[2]] = own_dofs, own
 
     def loads(

@@ -87,11 +87,3 @@ def add_loads(
                 for power in range(n_power - 2, -1, -1):
                     weight = weight * xi + table[e, power, a]
                 total[k, dofs[e, a]] += weight * force
-
-
-@as_compiled
-def mark_used(dofs: Any, weights: Any, mark: Any) -> None:
-    """Mark the d.o.f. (n,) that entries of rows (m,) give any weight."""
-    for i in range(dofs.shape[0]):
-        if weights[i] != 0.0:
-            mark[dofs[i]] = True

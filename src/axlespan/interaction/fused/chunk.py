@@ -82,16 +82,18 @@ class Chunk:
 
     def _rows(self, stretch: Stretch, coupled: bool) -> tuple[IntArray, FloatArray]:
         """Places in the chunk (n_step, n_wheel, n_local) of the coupled wheels, or the moving forces, and weights."""
-        from axlespan.interaction.fused.kernel import fill_places  # numba is an optional part
-
         lanes = stretch.crossings[self.lane : self.lane + self.used]
-        which = [np.flatnonzero((rows.rank >= 0) == coupled) for rows in lanes]
-        n_local = max(rows.dofs.shape[2] for rows in lanes)
+        which = [rows.live[(rows.rank >= 0) == coupled] for rows in lanes]
+        n_local = max(path.free.dofs.shape[1] for rows in lanes for path in rows.train.paths)
         shape = (stretch.n_step, sum(map(len, which)), n_local)
         place, weights, begin = np.zeros(shape, np.int64), np.zeros(shape), 0
         for lane, (rows, wheels) in enumerate(zip(lanes, which, strict=True)):
-            arrays = (rows.dofs, rows.weights, wheels, self._body.rank)
-            fill_places(*arrays, self.width, lane, begin, place, weights)
+            slots = np.arange(begin, begin + len(wheels))
+            for path in rows.train.paths if len(wheels) else ():
+                own = np.isin(wheels, path.wheels)
+                numbers = self._body.rank[path.free.dofs] * self.width + lane
+                arrays = (rows.positions, wheels[own], slots[own], place, weights)
+                path.free.fill_rows(*arrays, numbers=numbers)
             begin += len(wheels)
         return place, weights
 

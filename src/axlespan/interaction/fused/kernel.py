@@ -270,20 +270,6 @@ def clear(place: Any, weights: Any, load: Any) -> None:
 
 
 @as_compiled
-def fill_places(
-    dofs: Any, weights: Any, which: Any, rank: Any, width: int, lane: int, begin: int, place: Any, into: Any
-) -> None:
-    """Places in a chunk of some wheels ``which`` of a lane with rows (n_step, n_wheel, n_local), and their weights."""
-    for k in range(dofs.shape[0]):
-        for i in range(which.shape[0]):
-            r = which[i]
-            for a in range(dofs.shape[2]):
-                if weights[k, r, a] != 0.0:
-                    place[k, begin + i, a] = rank[dofs[k, r, a]] * width + lane
-                    into[k, begin + i, a] = weights[k, r, a]
-
-
-@as_compiled
 def add_load(place: Any, weights: Any, into: Any, forces: Any, factor: float, shift: int, load: Any) -> Any:
     """Add loads of wheels with rows (n_wheel, n_local); the lowest place and the highest one that were loaded."""
     low, high = load.shape[0], -1

@@ -96,8 +96,12 @@ class Tape:
     def is_good(self, largest: float) -> bool:
         """Whether all that is written is finite, and no contact force is so large."""
         n = self.filled
-        with np.errstate(all="ignore"):  # a sum is finite only if everything in it is
-            parts = (self._near[:n], self._vehicles[:n], self._sums[:, :, :n])
+        if not n:
+            return True
+        with np.errstate(
+            all="ignore"
+        ):  # what is not finite once stays so, and a sum is finite only if all in it is
+            parts = (self._near[n - 1], self._vehicles[n - 1], self._sums[:, :, n - 1])
             if not all(bool(np.isfinite(part.sum())) for part in parts if part.size):
                 return False
             forces = self._forces[:n]

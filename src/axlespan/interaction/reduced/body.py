@@ -74,6 +74,11 @@ class ReducedColumns(PathColumns):
         self.offset = self.low = np.zeros_like(self.held)
         self.high = np.full_like(self.held, len(self.held))
 
+    @property
+    def is_whole(self) -> bool:
+        """All are at hand."""
+        return True
+
     def for_others(self) -> PathColumns:
         """Nothing changes here: crossings may share it."""
         return self

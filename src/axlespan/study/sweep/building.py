@@ -39,7 +39,7 @@ _PARTS: Final = 256
 _NAMES: Final = ("structure", "train", "crossing", "other_trains", "analysis", "output", "assessment")
 
 # Steps of a scenario at which its energy is balanced: a few of each are many of a study.
-_ENERGY_SAMPLES: Final = 4
+_ENERGY_SAMPLES: Final = 2
 
 
 @dataclass(frozen=True, eq=False)
