@@ -28,8 +28,8 @@ IntArray = npt.NDArray[np.int64]
 #: Shares of three sleepers in an axle load (EN 1991-2 6.3.6.1; from memory).
 SLEEPER_SHARES = (0.25, 0.5, 0.25)
 
-# So many positions at a time are worth machine code.
-_MANY = 256
+# So many positions at a time are worth machine code: the first time, and where it is at hand.
+_MANY, _SOME = 256, 8
 
 
 @cache
@@ -40,6 +40,12 @@ def _loops() -> Any:
     from axlespan.running import path_kernel
 
     return path_kernel
+
+
+def _loops_for(positions: int) -> Any:
+    """The compiled loops where they pay for so many positions, else None."""
+    at_hand = _loops.cache_info().currsize > 0
+    return _loops() if positions >= (_SOME if at_hand else _MANY) else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,7 +158,7 @@ class PolynomialPath:
         numbers : array (n_segment, n_local), optional
             What is written in place of the d.o.f.
         """
-        loops = None if derivative or positions.shape[0] * len(contacts) < _MANY else _loops()
+        loops = None if derivative else _loops_for(positions.shape[0] * len(contacts))
         if loops is not None:
             breaks, table, own_dofs = self._table
             where = own_dofs if numbers is None else numbers
@@ -185,7 +191,7 @@ class PolynomialPath:
         if one_way and len(positions):
             ends = positions[[0, -1]][:, wheels] + shift
             wheels = wheels[(ends.max(axis=0) >= self.start) & (ends.min(axis=0) <= self.stop)]
-        loops = None if positions.shape[0] * len(wheels) < _MANY else _loops()
+        loops = _loops_for(positions.shape[0] * len(wheels))
         if loops is not None:
             arrays = (np.ascontiguousarray(positions), shift, np.ascontiguousarray(forces), wheels, total)
             loops.add_loads(*self._table, self._weighty, *arrays)
