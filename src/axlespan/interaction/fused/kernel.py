@@ -143,12 +143,15 @@ def move_vehicles(
     Columns of a block of ``entries`` are padded to pieces; so ``result`` has room for a piece behind its end.
     """
     u, v, a = values[0], values[1], values[2]
+    u1, u2, u3, v2, v3 = p[2, 0], p[2, 1], p[2, 2], p[3, 1], p[3, 2]
+    mean_u, mean_v = work[0], work[1]
     for b in range(kind.shape[0]):
         low, high = first[b], first[b + 1]
         for i in range(low, high):
-            work[0, i] = p[2, 0] * u[i] + (p[2, 1] * v[i] + p[2, 2] * a[i])
-            if parts == 3:
-                work[1, i] = p[3, 1] * v[i] + p[3, 2] * a[i]
+            mean_u[i] = u1 * u[i] + (u2 * v[i] + u3 * a[i])
+        if parts == 3:
+            for i in range(low, high):
+                mean_v[i] = v2 * v[i] + v3 * a[i]
         padded = (high - low + PIECE - 1) // PIECE * PIECE
         for piece in range(0, padded, PIECE):
             at = begin[kind[b]] + piece
@@ -319,16 +322,16 @@ def take_fleet(fleet: Any, late: Any, tape: Any, k: int) -> None:
     starts, columns, entries = responses
     dt, late_u, late_v, u_from_a, v_from_a = late
     on_tape, forces_on_tape = tape[2], tape[3]
+    u, v, a = values[0], values[1], values[2]
+    u_on, v_on, a_on = on_tape[k, 0], on_tape[k, 1], on_tape[k, 2]
     for i in range(at_dofs[0], at_dofs[1]):
         new = result[i]
         for q in range(starts[i], starts[i + 1]):
             new += entries[q] * forces[columns[q]]
-        u, v, a = values[0, i], values[1, i], values[2, i]
-        values[0, i] = (u + (dt * v + late_u * a)) + u_from_a * new
-        values[1, i] = (v + late_v * a) + v_from_a * new
-        values[2, i] = new
-        for q in range(3):
-            on_tape[k, q, i] = values[q, i]
+        u_new = (u[i] + (dt * v[i] + late_u * a[i])) + u_from_a * new
+        v_new = (v[i] + late_v * a[i]) + v_from_a * new
+        u[i], v[i], a[i] = u_new, v_new, new
+        u_on[i], v_on[i], a_on[i] = u_new, v_new, new
     for i in range(at_contacts[0], at_contacts[1]):
         forces_on_tape[k, coupled[i]] = forces[i]
 

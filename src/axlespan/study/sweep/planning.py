@@ -19,6 +19,9 @@ IntArray = npt.NDArray[np.int64]
 MOST_LANES: Final = 32
 """Most scenarios side by side: beyond, what they work on does not fit into a processor's cache any more."""
 
+# Scenarios that the compiled loop takes at a time: tasks of whole ones leave none half empty.
+_AT_A_TIME: Final = 8
+
 # Tasks for each worker, so that they end at about the same time, and the fewest scenarios of one.
 _TASKS_EACH, _FEWEST = 4, 8
 
@@ -74,9 +77,15 @@ def _cuts(apart: IntArray, structure: IntArray, lanes: int) -> Iterator[tuple[in
             yield begin, left
             begin = left
         if right - left > lanes:
-            pieces = math.ceil((right - left) / lanes)
-            marks = np.linspace(left, right, pieces + 1).round().astype(int).tolist()
-            yield from itertools.pairwise(marks)
+            yield from itertools.pairwise(_marks(left, right, lanes))
             begin = right
     if begin < n:
         yield begin, n
+
+
+def _marks(left: int, right: int, lanes: int) -> list[int]:
+    """Cuts of a run of scenarios into tasks of about the same size, whole multiples where that goes."""
+    pieces, unit = math.ceil((right - left) / lanes), _AT_A_TIME if lanes % _AT_A_TIME == 0 else 1
+    units = math.ceil((right - left) / unit)
+    marks = left + unit * np.linspace(0, units, pieces + 1).round().astype(int)
+    return np.minimum(marks, right).tolist()
