@@ -81,31 +81,29 @@ def entry(i: int, j: int, n_local: int, Z: Any, width: int, room: Any) -> float:
 
 @as_compiled
 def fill_system(
-    wheels: Any, at: Any, own: Any, vehicles: Any, path: Any, room: Any, S: Any, reach: Any
+    wheels: Any, at: Any, begin: int, n: int, vehicles: Any, path: Any, room: Any, S: Any, reach: Any
 ) -> None:
-    """Fill in the upper triangle of S (n, n) for contacts ``own`` (n,), as far as ``reach`` (n,) says.
+    """Fill in the upper triangle of S (n, n) for contacts, as far as ``reach`` (n,) says.
 
     Parameters
     ----------
     wheels : (int, int)
         Those on the structure, first and behind the last; ``at`` are their places among the contacts.
     vehicles
-        Compliance of the vehicles, as rows of a sparse matrix over all contacts.
+        Compliance of the vehicles (n, n), of which only the upper triangle is not zero, from ``begin`` on; and as far
+        as its rows reach.
     """
-    starts, columns, entries = vehicles
+    compliance, vehicles_reach, first_contact = vehicles
     begins, _, values, dense, numbers = room
     Z, width, n_local = path[4], path[5], len(begins) // max(len(numbers), 1)
     widest = 4 * n_local + 2 * PIECE
-    n = len(own)
     for i in range(n):
-        for j in range(i, n):
-            S[i, j] = 0.0
-        reach[i] = i
-        for q in range(starts[own[i]], starts[own[i] + 1]):
-            j = i + np.int64(columns[q]) - own[i]  # contacts of a vehicle follow one another
-            if j >= i:
-                S[i, j] = entries[q]
-                reach[i] = max(reach[i], j)
+        reach[i] = vehicles_reach[first_contact + i]
+        for j in range(n):
+            S[i, j] = compliance[begin + i * n + j]
+    in_order = True  # wheels of one train on one line: behind one that is out of reach, all are
+    for r in range(wheels[0] + 1, wheels[1]):
+        in_order = in_order and numbers[r, 0] and numbers[r, 1] <= numbers[r - 1, 1]
     for r in range(wheels[0], wheels[1]):
         if numbers[r, 0] == 0:
             continue
@@ -113,6 +111,8 @@ def fill_system(
         for s in range(r, wheels[1]):
             first, pieces = numbers[s, 1], numbers[s, 3]
             if not (numbers[s, 0] and first < numbers[r, 5] and numbers[s, 2] >= numbers[r, 4]):
+                if in_order:
+                    break
                 continue
             result = 0.0
             if pieces and first >= numbers[r, 6] and first + pieces * PIECE <= numbers[r, 7]:

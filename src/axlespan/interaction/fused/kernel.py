@@ -176,7 +176,7 @@ def march(
     known_place, known_weights, known_forces = known
     vectors, factors = external
     forces, gaps, at_contacts = fleet[0], fleet[1], fleet[2]
-    contacts, ends, wheel_ends, at, vehicles, path = systems
+    contacts, ends, wheel_ends, at, (compliance, compliance_begins, vehicles_reach), path = systems
     L, w = len(lanes), len(width) * len(lanes)
     gap = np.zeros(len(forces))
     most = 0
@@ -227,7 +227,8 @@ def march(
                 own, here = contacts[ends[s] : ends[s + 1]], (wheel_ends[s], wheel_ends[s + 1])
                 for i in range(len(own)):
                     b[i] = gap[own[i]]
-                fill_system(here, at, own, vehicles, path, room, S, within)
+                own_vehicles = (compliance, vehicles_reach, ends[s])
+                fill_system(here, at, compliance_begins[s], len(own), own_vehicles, path, room, S, within)
                 if not solve_system(S, within, len(own), b):
                     return k
                 for i in range(len(own)):

@@ -66,10 +66,7 @@ class FusedMarch:
             chunk.take(convoy.structure)
         self._stretch: Stretch | None = None
         self._body = body
-        given = sp.csr_array((0, 0)) if convoy.fleet is None else convoy.fleet.compliance
-        symmetric = sp.csr_array(0.5 * (given + given.T))
-        symmetric.sort_indices()
-        self._compliance = csr_parts(symmetric)
+        self._compliance: dict[int, FloatArray] = {}  # by lane
 
     @classmethod
     def of(cls, convoy: Convoy) -> Self | None:
@@ -122,16 +119,41 @@ class FusedMarch:
         result = []
         for chunk in self._chunks:
             own, wheel_ends, at = [np.empty(0, np.int64)], [0], [np.empty(0, np.int64)]
+            vehicles = []
             for lane in range(chunk.lane, chunk.lane + chunk.used):
                 contacts = convoy.coupled[lane]
-                own.append(contacts.start + np.flatnonzero(touched[owner[contacts]]))
+                here = np.flatnonzero(touched[owner[contacts]])
+                own.append(contacts.start + here)
+                vehicles.append(self._vehicles_of(lane, here))
                 into = stretch.into[(stretch.into >= contacts.start) & (stretch.into < contacts.stop)]
                 at.append(np.searchsorted(own[-1], into))
                 wheel_ends.append(wheel_ends[-1] + len(into))
             ends = np.cumsum([0, *map(len, own[1:])]).astype(np.int64)
             rows = (np.concatenate(own), ends, np.array(wheel_ends, dtype=np.int64), np.concatenate(at))
-            result.append((*rows, self._compliance, path))
+            begins = np.cumsum([0, *(S.size for S, _ in vehicles)])[:-1].astype(np.int64)
+            compliance = np.concatenate([S.ravel() for S, _ in vehicles])
+            result.append(
+                (*rows, (compliance, begins, np.concatenate([reach for _, reach in vehicles])), path)
+            )
         return result
+
+    def _vehicles_of(self, lane: int, contacts: IntArray) -> tuple[FloatArray, IntArray]:
+        """Compliance of the vehicles of a lane at some of its contacts, the upper triangle, and the reach of its rows."""
+        convoy = self._convoy
+        if lane not in self._compliance:
+            whole = convoy.coupled[lane]
+            block = (
+                convoy.fleet.compliance[whole][:, whole].toarray()
+                if convoy.fleet is not None
+                else np.zeros((0, 0))
+            )
+            self._compliance[lane] = np.triu(0.5 * (block + block.T))
+        S = self._compliance[lane]
+        if len(contacts) < len(S):
+            S = S[np.ix_(contacts, contacts)]
+        n = len(S)
+        reach = n - 1 - np.argmax(S[:, ::-1] != 0.0, axis=1) if n else np.empty(0, dtype=np.int64)
+        return S, reach.astype(np.int64)
 
     def _march(
         self, chunk: Chunk, stretch: Stretch, forced: bool, external: FloatArray | None, first: int, stop: int
