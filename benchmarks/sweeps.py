@@ -7,7 +7,7 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
-from axlespan.interaction.simulate import run_plan, run_plans
+from axlespan.interaction.runs import run_plan, run_plans
 from axlespan.study.sweep import Study
 from axlespan.study.sweep.workshop import forget
 from benchmarks.timing import Row, in_turns

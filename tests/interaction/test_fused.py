@@ -5,7 +5,7 @@ import pytest
 
 from axlespan.bridges import ballasted_track, simple_span, with_track
 from axlespan.dynamics.alpha import Alpha
-from axlespan.interaction import simulate as module
+from axlespan.interaction import runs as module
 from axlespan.interaction.crossing import Crossing
 from axlespan.interaction.fused.march import FusedMarch
 from axlespan.interaction.simulate import simulate_many

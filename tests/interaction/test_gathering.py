@@ -12,8 +12,9 @@ from axlespan.interaction.crossing import Crossing
 from axlespan.interaction.plan import plan_for
 from axlespan.interaction.records import gathering
 from axlespan.interaction.records.recorder import Recorder
+from axlespan.interaction.runs import run_plans
 from axlespan.interaction.settings import settings_for
-from axlespan.interaction.simulate import run_plans, simulate
+from axlespan.interaction.simulate import simulate
 from axlespan.irregularity import Harmonic
 from axlespan.vehicles.simple import axle_loads, sprung_mass
 from axlespan.vehicles.train import Train

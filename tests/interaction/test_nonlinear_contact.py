@@ -10,8 +10,9 @@ from axlespan.bridges.spans import simple_span
 from axlespan.contact.laws import Hertz, LinearSpring, Rigid, Unilateral
 from axlespan.dynamics.alpha import Alpha
 from axlespan.errors import AnalysisError, InputError, Outcome
-from axlespan.interaction.convoy import Lane, drive
+from axlespan.interaction.convoy import Lane
 from axlespan.interaction.crossing import Crossing
+from axlespan.interaction.drive import drive
 from axlespan.interaction.groundwork import prepare
 from axlespan.interaction.nonlinear.march import begin_nonlinear, watch
 from axlespan.interaction.plan import plan_for

@@ -9,7 +9,8 @@ from axlespan.bridges.spring_laws import with_spring_law
 from axlespan.contact.laws import Hertz, LinearSpring
 from axlespan.dynamics import integrator
 from axlespan.errors import AnalysisError, InputError, Outcome
-from axlespan.interaction.convoy import Lane, drive
+from axlespan.interaction.convoy import Lane
+from axlespan.interaction.drive import drive
 from axlespan.interaction.groundwork import prepare
 from axlespan.interaction.nonlinear.contact import NonlinearCoupling, StepNotConverged
 from axlespan.interaction.nonlinear.march import begin_nonlinear, watch, with_cutting

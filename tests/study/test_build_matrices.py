@@ -13,7 +13,7 @@ from scipy.linalg import eigh
 import axlespan as asp
 from axlespan.cli.examples import list_or_copy
 from axlespan.errors import InputError
-from axlespan.interaction.simulate import run_plan
+from axlespan.interaction.runs import run_plan
 from axlespan.io.matrices import (
     DofMap,
     ModalModel,

@@ -9,7 +9,7 @@ from ruamel.yaml import YAML
 
 import axlespan as asp
 from axlespan.errors import InputError
-from axlespan.interaction.simulate import run_plan
+from axlespan.interaction.runs import run_plan
 from axlespan.io.meshes import write_gmsh
 from axlespan.linalg.eigen import lowest_modes
 from axlespan.linalg.factor import factorize

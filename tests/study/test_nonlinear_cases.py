@@ -11,7 +11,7 @@ from axlespan.bridges import ballasted_track, track_on_ground
 from axlespan.bridges.unilateral import with_unilateral_springs
 from axlespan.contact.laws import Hertz, LinearSpring, Unilateral
 from axlespan.errors import InputError
-from axlespan.interaction.simulate import run_plan
+from axlespan.interaction.runs import run_plan
 from axlespan.study.build import build
 from axlespan.study.loader import load_case
 

@@ -5,7 +5,7 @@ import pytest
 
 import axlespan as asp
 from axlespan.errors import InputError
-from axlespan.interaction.simulate import run_plan
+from axlespan.interaction.runs import run_plan
 from axlespan.model.nonlinear_elements import with_nonlinear_element
 from axlespan.study.build import build
 from axlespan.study.loader import load_case

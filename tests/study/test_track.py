@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from axlespan.errors import InputError
-from axlespan.interaction.simulate import run_plan
+from axlespan.interaction.runs import run_plan
 from axlespan.study.build import build
 
 DAMPING = "  damping: {kind: rayleigh, ratio: 1 %, frequencies: [3 Hz, 12 Hz]}"

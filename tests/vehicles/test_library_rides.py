@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import axlespan as asp
-from axlespan.interaction.simulate import run_plan
+from axlespan.interaction.runs import run_plan
 from axlespan.study.build import build
 from axlespan.study.loader import read_case
 from axlespan.vehicles import library

@@ -14,7 +14,7 @@ from axlespan.cli.progress import Steps, progress
 from axlespan.cli.room import check_size
 from axlespan.errors import AnalysisError, AxlespanError, InputError, Place
 from axlespan.interaction.result import Result
-from axlespan.interaction.simulate import run_plan
+from axlespan.interaction.runs import run_plan
 from axlespan.io.drawing import drawing_of
 from axlespan.io.paraview import require_model, write_paraview
 from axlespan.io.results import write_result

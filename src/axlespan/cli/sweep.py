@@ -17,7 +17,7 @@ from axlespan.cli.messages import DONE, FAILED, INTERRUPTED, refuse, say, warn
 from axlespan.cli.room import free_disk, free_memory
 from axlespan.errors import AxlespanError, InputError
 from axlespan.interaction.result import Result
-from axlespan.interaction.simulate import run_plan
+from axlespan.interaction.runs import run_plan
 from axlespan.io.results import write_result
 from axlespan.io.strict_json import to_json
 from axlespan.io.summary import summary, summary_lines, write_summary

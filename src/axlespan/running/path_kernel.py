@@ -8,7 +8,7 @@ from axlespan.compiled import as_compiled
 
 
 @as_compiled
-def segment_of(breaks: Any, s: float) -> int:
+def segment_of(breaks: Any, s: float) -> Any:
     """Return the segment of a position on the path; a break belongs to the segment that begins there."""
     last = breaks.shape[0] - 2
     guess = int((s - breaks[0]) / (breaks[last + 1] - breaks[0]) * (last + 1))

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 import axlespan as asp
-from axlespan.interaction.simulate import run_plan
+from axlespan.interaction.runs import run_plan
 from axlespan.linalg.eigen import lowest_modes
 from axlespan.linalg.factor import factorize
 from axlespan.reference import timoshenko_frequencies

@@ -12,7 +12,8 @@ import numpy.typing as npt
 
 from axlespan.compiled import Loop
 from axlespan.interaction.contact_system import Stretch
-from axlespan.interaction.convoy import Convoy, Couple, Leaper
+from axlespan.interaction.convoy import Convoy
+from axlespan.interaction.drive import Couple, Leaper
 from axlespan.interaction.fused.march import FusedMarch
 from axlespan.interaction.nonlinear.contact import NonlinearCoupling
 from axlespan.interaction.nonlinear.interface_solver import LIMIT

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from axlespan.interaction.convoy import Couple
+from axlespan.interaction.drive import Couple
 from axlespan.interaction.nonlinear.balance import Balance
 from axlespan.interaction.nonlinear.contact import NonlinearCoupling
 from axlespan.interaction.nonlinear.flights import Flights

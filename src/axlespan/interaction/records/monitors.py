@@ -49,7 +49,17 @@ class CompatibilityMonitor:
 
 
 class BalanceMonitor:
-    """Vertical equilibrium of the whole structure at each step: reactions, loads, wheels and inertia."""
+    """Vertical equilibrium of the whole structure at each step: reactions, loads, wheels and inertia.
+
+    ``like`` is that of another crossing of the structure, whose tables serve here too.
+    """
+
+    mass: FloatArray  # (n,) M t of the structure that moves up by one [kg]
+    sums: Sums
+    _t_prescribed: FloatArray
+    _t_free: FloatArray
+    _rows: list[tuple[FloatArray, str]]
+    _loads: list[tuple[float, Callable[[FloatArray], FloatArray]]]
 
     def __init__(
         self,
@@ -97,7 +107,7 @@ class BalanceMonitor:
         rows += [(vector, name) for vector, name in ((damping, "v"), (stiffness, "u")) if np.any(vector)]
         self._rows = [(vector[system.prescribed], name) for vector, name in rows]
         moved = [vector[system.free] for vector, _ in rows]
-        self.mass: FloatArray = moved[0]  # (n,) M t of the structure that moves up by one [kg]
+        self.mass = moved[0]
         self.sums = Sums.together(
             [
                 Sums.of_blocks(*(vector[None] if name == which else 0.0 * vector[None] for which in "uva"))

@@ -52,8 +52,8 @@ class Reactions:
         system = self.plan.crossing.structure.system
         blocks = system.partition
         none = sp.csr_array(blocks.K_FP.T.shape)
-        from_rest = Sums.of_blocks(blocks.K_FP.T, blocks.C_FP.T, none)
-        self.sums = Sums.together([from_rest, Sums.of_blocks(none, none, blocks.M_FP.T)])
+        from_rest = Sums.of_blocks(sp.csr_array(blocks.K_FP.T), sp.csr_array(blocks.C_FP.T), none)
+        self.sums = Sums.together([from_rest, Sums.of_blocks(none, none, sp.csr_array(blocks.M_FP.T))])
         self.free_dofs = np.unique(sp.coo_array(blocks.M_FP).row.astype(np.int64))
         self._M = sp.csr_array(sp.csr_array(blocks.M_FP)[self.free_dofs])
         loads = [(load.vector[system.prescribed], load.factor) for load in system.loads]

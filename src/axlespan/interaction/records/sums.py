@@ -20,7 +20,7 @@ class Sums:
     rows: sp.csr_array  # (n_sum, 3 n)
 
     @classmethod
-    def of_blocks(cls, *blocks: sp.sparray | FloatArray) -> Sums:
+    def of_blocks(cls, *blocks: sp.csr_array | FloatArray) -> Sums:
         """Sums with weights (n_sum, n) for displacements, velocities and accelerations."""
         return cls(sp.csr_array(sp.hstack([sp.csr_array(block) for block in blocks])))
 

@@ -19,7 +19,8 @@ import numpy.typing as npt
 
 from axlespan.dynamics.integrator import State
 from axlespan.dynamics.reduction import ReducedBasis
-from axlespan.interaction.convoy import Couple, Lane, drive
+from axlespan.interaction.convoy import Lane
+from axlespan.interaction.drive import Couple, drive
 from axlespan.interaction.plan import Plan
 from axlespan.interaction.records.recorder import Recorder
 from axlespan.interaction.reduced.body import PreparedReduced

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from axlespan.errors import InputError
 from axlespan.interaction.plan import Plan
-from axlespan.interaction.simulate import run_plans
+from axlespan.interaction.runs import run_plans
 from axlespan.study.build import BuiltCase
 from axlespan.study.faults import InputErrors
 from axlespan.study.size import size_of

@@ -88,4 +88,4 @@ def _marks(left: int, right: int, lanes: int) -> list[int]:
     pieces, unit = math.ceil((right - left) / lanes), _AT_A_TIME if lanes % _AT_A_TIME == 0 else 1
     units = math.ceil((right - left) / unit)
     marks = left + unit * np.linspace(0, units, pieces + 1).round().astype(int)
-    return np.minimum(marks, right).tolist()
+    return [int(mark) for mark in np.minimum(marks, right)]

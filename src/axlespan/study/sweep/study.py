@@ -16,7 +16,7 @@ import numpy as np
 from axlespan.card import Card, Shown, some
 from axlespan.errors import InputError
 from axlespan.interaction.result import Result
-from axlespan.interaction.simulate import run_plan
+from axlespan.interaction.runs import run_plan
 from axlespan.io.strict_json import to_json
 from axlespan.study.build import BuiltCase
 from axlespan.study.case import Case

@@ -17,7 +17,7 @@ from axlespan.interaction.crossing import Crossing
 from axlespan.interaction.groundwork import Groundwork
 from axlespan.interaction.plan import Plan
 from axlespan.interaction.result import Result
-from axlespan.interaction.simulate import run_plans
+from axlespan.interaction.runs import run_plans
 from axlespan.running.structure import Structure
 from axlespan.standards import Assessment, AtRest, BridgeFacts, assess, bridge_facts
 from axlespan.study.build import BuiltCase
