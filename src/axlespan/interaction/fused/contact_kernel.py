@@ -54,6 +54,8 @@ def pack_rows(lanes: Any, place: Any, weights: Any, path: Any, room: Any) -> Non
                 reach, limit = min(reach, low[q]), max(limit, high[q])
                 hold, until = max(hold, offset[q]), min(until, offset[q] + width)
                 m += 1
+        for k in range(r * n_local + m, (r + 1) * n_local if m else 0):  # loops of one length are foreseen
+            begins[k], places[k], values[k] = begins[r * n_local], places[r * n_local], 0.0
         pieces = (last + PIECE - first) // PIECE if m else 0
         pieces = pieces if pieces * PIECE <= widest else 0
         for i, number in enumerate((m, first, last, pieces, reach, limit, hold, until)):
@@ -107,7 +109,7 @@ def fill_system(
     for r in range(wheels[0], wheels[1]):
         if numbers[r, 0] == 0:
             continue
-        e_0, stop = np.uint64(r * n_local), np.uint64(r * n_local + numbers[r, 0])
+        e_0, stop = np.uint64(r * n_local), np.uint64((r + 1) * n_local)
         for s in range(r, wheels[1]):
             first, pieces = numbers[s, 1], numbers[s, 3]
             if not (numbers[s, 0] and first < numbers[r, 5] and numbers[s, 2] >= numbers[r, 4]):

@@ -156,10 +156,13 @@ def move_vehicles(
         for piece in range(0, padded, PIECE):
             at = begin[kind[b]] + piece
             sums = scaled(0.0, read(_EIGHT, entries, np.uint64(at)))
+            none = sums
             for part in range(parts):
+                own = none  # parts do not wait for one another
                 for j in range(low, high):
-                    sums = plus(sums, work[part, j], read(_EIGHT, entries, np.uint64(at)))
+                    own = plus(own, work[part, j], read(_EIGHT, entries, np.uint64(at)))
                     at += padded
+                sums = plus(sums, 1.0, own)
             put(result, np.uint64(low + piece), sums)
 
 

@@ -12,14 +12,43 @@ static force of the wheel.
 
 from __future__ import annotations
 
+from functools import cache
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
+
+from axlespan.compiled import Loop, compiled
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 _WEIGHTS = np.array([1.0, -4.0, 6.0, -4.0, 1.0]) / 16.0
 _WINDOW = 32
+
+
+@cache
+def _compiled() -> Loop | None:
+    return compiled(_follow)
+
+
+def _follow(series: Any, squares: Any, before: int, weights: Any, worst: Any) -> None:
+    """Fill in the squares of the noise behind those of before, and the largest root of their mean over the window."""
+    for j in range(series.shape[1]):
+        largest, total = worst[j] ** 2 * _WINDOW, 0.0
+        for i in range(squares.shape[0]):
+            if i >= before:
+                k = i - before
+                noise = 0.0
+                for w in range(5):
+                    noise += weights[w] * series[k + w, j]
+                squares[i, j] = noise * noise
+            total += squares[i, j]
+            if i >= _WINDOW:
+                total -= squares[i - _WINDOW, j]
+            if i >= _WINDOW - 1 and total > largest:
+                largest = total
+        worst[j] = (max(largest, 0.0) / _WINDOW) ** 0.5
 
 
 class NoiseMonitor:
@@ -39,7 +68,7 @@ class NoiseMonitor:
         self._scale = np.where(size > 0.0, size, np.inf)  # without gravity there is nothing to relate to
         self._last = np.zeros((0, len(coupled)))
         self._squares = np.zeros((0, len(coupled)))
-        self._worst = np.zeros(len(coupled))
+        self._largest = np.zeros(len(coupled))  # root mean squares [N]
 
     def look(self, forces: FloatArray) -> None:
         """Look at consecutive steps: forces (n_step, n_contact) [N]."""
@@ -49,6 +78,12 @@ class NoiseMonitor:
         self._last = series[-4:]
         if len(series) < 5:
             return
+        if (loop := _compiled()) is not None:
+            before = len(self._squares)
+            squares = np.concatenate([self._squares, np.empty((len(series) - 4, series.shape[1]))])
+            loop(series, squares, before, _WEIGHTS, self._largest)
+            self._squares = squares[-(_WINDOW - 1) :]
+            return
         noise = sum(w * series[i : len(series) - 4 + i] for i, w in enumerate(_WEIGHTS))
         squares = np.concatenate([self._squares, noise**2])
         self._squares = squares[-(_WINDOW - 1) :]
@@ -56,14 +91,14 @@ class NoiseMonitor:
             return
         sums = np.cumsum(np.concatenate([np.zeros((1, squares.shape[1])), squares]), axis=0)
         mean = (sums[_WINDOW:] - sums[:-_WINDOW]).max(axis=0) / _WINDOW
-        self._worst = np.maximum(self._worst, np.sqrt(np.maximum(mean, 0.0)) / self._scale)
+        self._largest = np.maximum(self._largest, np.sqrt(np.maximum(mean, 0.0)))
 
     @property
     def worst(self) -> FloatArray:
         """Largest share (n_coupled,) of the static force [-]."""
-        return self._worst
+        return self._largest / self._scale
 
     @property
     def largest(self) -> float:
         """Of all wheels."""
-        return float(self._worst.max(initial=0.0))
+        return float(self.worst.max(initial=0.0))
