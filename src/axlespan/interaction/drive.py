@@ -21,8 +21,8 @@ from axlespan.interaction.convoy import Convoy, Lane
 
 FloatArray = npt.NDArray[np.float64]
 
-# Lanes at their ends go along until they are so large a share.
-_IDLE = 0.25
+# Lanes at their ends go along until they are so large a share; the compiled loop leaves out chunks of them.
+_IDLE = 0.75
 
 #: One step of a convoy; returns all contact forces (n_contact,) of the joint fleet.
 Couple = Callable[[Convoy, Stretch, int, FloatArray | None], FloatArray]

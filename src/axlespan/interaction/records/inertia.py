@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Container, Sequence
 from functools import cache
 from typing import Any
 
@@ -27,8 +27,25 @@ def _recur(momentum: Any, alpha: float, before: Any) -> None:
             momentum[i, j] = before[j]
 
 
+def special_steps(
+    steps: IntArray, restarted: Container[int], released: Container[int], cut: Container[int]
+) -> list[int]:
+    """Places of the steps whose inertia forces do not just follow those of the step before: the start, and what was set anew."""
+    if not (restarted or released or cut):
+        return [0] if steps[0] == 0 else []
+    return [
+        i
+        for i, step in enumerate(steps.tolist())
+        if step == 0 or step in restarted or step - 1 in released or step in cut
+    ]
+
+
 def filtered(
-    momentum: FloatArray, alpha: float, before: FloatArray, special: IntArray, anew: Callable[[int], bool]
+    momentum: FloatArray,
+    alpha: float,
+    before: FloatArray,
+    special: Sequence[int],
+    anew: Callable[[int], bool],
 ) -> None:
     """Turn M ü (n_step, m) of consecutive steps into inertia forces, in place.
 
@@ -36,11 +53,11 @@ def filtered(
     ----------
     before : array (m,)
         Those of the step before; those of the last step afterwards.
-    special : array of int
-        Steps before which ``anew`` is called: it may set ``before``, and says whether the step's own M ü stands.
+    special : sequence of int
+        Places before which ``anew`` is called: it may set ``before``, and says whether the step's own M ü stands.
     """
     loop, begin = _compiled() or _recur, 0
-    for step in [*special.tolist(), len(momentum)]:
+    for step in [*special, len(momentum)]:
         loop(momentum[begin:step], alpha, before)
         begin = step
         if step < len(momentum) and anew(step):

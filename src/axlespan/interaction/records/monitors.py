@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from axlespan.dynamics.integrator import Matrices, State
 from axlespan.interaction.plan import Plan
-from axlespan.interaction.records.inertia import filtered
+from axlespan.interaction.records.inertia import filtered, special_steps
 from axlespan.interaction.records.substeps import Substep
 from axlespan.interaction.records.sums import Sums
 from axlespan.running.path import PolynomialPath
@@ -161,11 +161,7 @@ class BalanceMonitor:
     ) -> None:
         """Turn tᵀ M ü (n_step,), of which supports that move have a share, into inertia forces, in place."""
         alpha = self._plan.settings.method.alpha
-        special = [
-            k
-            for k, step in enumerate(steps.tolist())
-            if step == 0 or step in self.restarted or step - 1 in self.released or step in self.between
-        ]
+        special = special_steps(steps, self.restarted, self.released, self.between)
 
         def anew(k: int) -> bool:
             step = int(steps[k])
@@ -179,7 +175,7 @@ class BalanceMonitor:
                 momentum[k] += self.restarted[step]
             return step == 0 or step in self.restarted
 
-        filtered(momentum[:, None], alpha, self._inertia, np.array(special, dtype=np.int64), anew)
+        filtered(momentum[:, None], alpha, self._inertia, special, anew)
 
     def _carried(self, positions: FloatArray, forces: FloatArray) -> FloatArray:
         """What the structure carries (n_step,) of the wheels' forces: all of it, or less at its ends."""

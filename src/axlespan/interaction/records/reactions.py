@@ -9,7 +9,7 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from axlespan.interaction.plan import Plan
-from axlespan.interaction.records.inertia import filtered
+from axlespan.interaction.records.inertia import filtered, special_steps
 from axlespan.interaction.records.substeps import Substep
 from axlespan.interaction.records.sums import Sums
 from axlespan.running.path import PolynomialPath
@@ -113,11 +113,7 @@ class Reactions:
         alpha = self.plan.settings.method.alpha
         if alpha == 0.0:
             return momentum
-        special = [
-            i
-            for i, step in enumerate(steps.tolist())
-            if step == 0 or step in self.restarted or step - 1 in self.released or step in self.between
-        ]
+        special = special_steps(steps, self.restarted, self.released, self.between)
 
         def anew(i: int) -> bool:
             step = int(steps[i])
@@ -130,7 +126,7 @@ class Reactions:
                 self._inertia[:] = own if fresh else (own + alpha * self._inertia) / (1.0 + alpha)
             return step == 0 or step in self.restarted
 
-        filtered(momentum, alpha, self._inertia, np.array(special, dtype=np.int64), anew)
+        filtered(momentum, alpha, self._inertia, special, anew)
         return momentum
 
     def _momentum(self, time: float, near: FloatArray) -> FloatArray:
