@@ -127,3 +127,28 @@ def test_contact_systems_are_those_of_plain_numpy(spread):
     upper = np.triu_indices(6)
     np.testing.assert_allclose(S[upper], wanted[upper], atol=1e-12)
     assert all(reach >= [int(np.flatnonzero(row).max()) for row in np.triu(wanted)])
+
+
+def test_a_wheel_out_of_reach_does_not_hide_one_that_loads_two_lines():
+    """Three wheels whose lowest places descend: the last one stands on both lines, so near to the first one again."""
+    from axlespan.interaction.fused.contact_kernel import fill_system, pack_rows, room_for
+
+    n, width = 200, 31  # two lines of 100 places
+    near = np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
+    full = np.where(near > 12, 0.0, np.exp(-0.3 * near))
+    offset = np.clip(np.arange(n) - 15, 0, n - width)
+    Z = np.array([full[i, begin : begin + width] for i, begin in enumerate(offset)])
+    low, high = np.maximum(np.arange(n) - 12, 0), np.minimum(np.arange(n) + 13, n)
+    place = np.array([[110, 111, 112, 113], [60, 61, 62, 63], [6, 7, 106, 107]])
+    weights = np.full((3, 4), 0.25)
+    E = np.zeros((3, n))
+    np.put_along_axis(E, place, weights, axis=1)
+    room, S, reach = room_for(3, 4), np.full((3, 3), np.nan), np.zeros(3, dtype=np.int64)
+    path = (np.arange(n), offset, low, high, Z.reshape(-1), width)
+    pack_rows((0,), place, weights, path, room)
+    vehicles = (np.eye(3).ravel(), np.arange(3), 0)
+    fill_system((0, 3), np.arange(3), 0, 3, vehicles, path, room, S, reach)
+    wanted = np.eye(3) + E @ full @ E.T
+    assert wanted[0, 2] > 0.01
+    np.testing.assert_allclose(S[np.triu_indices(3)], wanted[np.triu_indices(3)], atol=1e-12)
+    assert reach[0] == 2

@@ -208,6 +208,72 @@ def test_an_error_in_an_element_ends_the_run_and_keeps_its_history():
     assert len(caught.value.result.time) == 80
 
 
+class Late(Cubic):
+    """An element that says something else from a displacement on."""
+
+    def __init__(self, force=None, tangent=None):
+        self.own, self.slope = force, tangent
+
+    def force(self, u, v, state):
+        return self.own(u) if self.own and abs(u[0]) > 1e-4 else super().force(u, v, state)
+
+    def tangent(self, u, v, state):
+        return self.slope(u) if self.slope and abs(u[0]) > 1e-4 else super().tangent(u, v, state)
+
+
+@pytest.mark.parametrize(
+    ("late", "words"),
+    [
+        (Late(lambda u: np.zeros(3)), r"says an array of the shape \(3,\) in force; it must have the shape \(2,\)"),
+        (Late(lambda u: ["a", "b"]), r"says what are no numbers in force: could not convert string to float"),
+        (Late(lambda u: None), r"(says an array of the shape \(\) in force|says what are no numbers in force)"),
+        (Late(None, lambda u: 3.0), r"says no pair of derivatives, to u and to v, in tangent"),
+        (Late(None, lambda u: (np.eye(2), np.zeros(2))), r"of the shape \(2,\) in tangent; .* shape \(2, 2\)"),
+        (Late(lambda u: exit_with(5)), r"fails in force: SystemExit: 5 \(test_nonlinear_elements\.py, line \d+\)"),
+        (Late(lambda u: np.linalg.inv(np.zeros((2, 2))) @ u),
+         r"fails in force: LinAlgError: Singular matrix \(test_nonlinear_elements\.py, line \d+\)"),
+        (Late(lambda u: np.nan * u), r"did not converge as a whole, nor in 16 parts of \S+ s "
+         r"\(the last one tried: 1 iteration, the force at spring 1\.element\.1 is not a number\)"),
+    ],
+)  # fmt: skip
+def test_what_is_said_of_an_element_that_fails_late(late, words):
+    car = asp.vehicles.sprung_mass(mass=5750.0, stiffness=1.595e6, unsprung_mass=800.0)
+    wrong = with_nonlinear_element(car, late, ["body.z", "wheel1.z"])
+    waves = asp.irregularity.Harmonic(amplitude=3e-3, wavelength=6.0)
+    crossing = asp.Crossing(bridge(), asp.Train.of(wrong), speed=40.0, irregularity=waves)
+    with pytest.raises(AnalysisError, match=words) as caught:
+        asp.simulate(crossing, time_step=DT, steps=300)
+    assert 1 < len(caught.value.result.time) < 300
+
+
+def exit_with(code):
+    raise SystemExit(code)
+
+
+class Careless(Cubic):
+    """It changes what it is handed, and keeps it."""
+
+    def force(self, u, v, state):
+        result = super().force(u, v, state)
+        u *= 3.0
+        v += 1.0
+        return result
+
+    def advanced(self, u, v, state):
+        return u, v
+
+
+def test_what_an_element_does_to_its_arguments_stays_with_it():
+    def moved(element):
+        car = asp.vehicles.sprung_mass(mass=5750.0, stiffness=1.595e6, unsprung_mass=800.0)
+        held = with_nonlinear_element(car, element, ["body.z", "wheel1.z"])
+        waves = asp.irregularity.Harmonic(amplitude=3e-3, wavelength=6.0)
+        crossing = asp.Crossing(bridge(), asp.Train.of(held), speed=40.0, irregularity=waves)
+        return asp.simulate(crossing, time_step=DT, steps=100).contact_force
+
+    np.testing.assert_array_equal(moved(Careless()), moved(Cubic()))
+
+
 class Stay:
     """A cable to the ground beside the bridge, which pulls up only."""
 

@@ -266,7 +266,7 @@ def careful(reach=REACH):
 def test_an_element_of_a_user_makes_the_steps_shorter():
     """Steps in which it moves too far are cut, as often as it takes, and no others."""
     steps, options = 300, {"sensors": {"m": 12.5}, "method": asp.Alpha(-0.1)}
-    with pytest.raises(AnalysisError, match=r"did not converge in 1 iterations .* spring 1\.damper\.1"):
+    with pytest.raises(AnalysisError, match=r"did not converge \(1 iteration, .* spring 1\.damper\.1"):
         asp.simulate(careful(), time_step=DT, steps=steps, cuts=0)
     result = run(careful(), time_step=DT, steps=steps, **options)
     free = run(careful(1.0), time_step=DT, steps=steps, **options)
@@ -330,7 +330,7 @@ def test_not_even_the_smallest_part_converges():
         asp.simulate(tight, time_step=DT, steps=600, sensors={"m": 12.5})
     said = str(caught.value)
     assert "did not converge as a whole, nor in 16 parts of 6.25e-05 s" in said
-    assert "worst at spring 1.damper.1" in said and "Use a smaller time step" in said
+    assert "the force at spring 1.damper.1 is not a number" in said and "Use a smaller time step" in said
     step = int(said.split(",")[0].removeprefix("step "))
     result = caught.value.result
     assert result.outcome.code == "failed"

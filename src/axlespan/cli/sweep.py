@@ -72,11 +72,12 @@ def _estimated(study: Study, trial: Trial, workers: int) -> Estimate:
 def _description(study: Study, trial: Trial, about: Estimate) -> list[str]:
     scenarios = study._scenarios
     factors = " × ".join(f"{len(axis)} of {', '.join(axis.paths)}" for axis in scenarios.axes)
+    manner = "one after another" if about.one_by_one else "side by side"
     lines = [
         study.title,
         f"  scenarios   {about.scenarios}: {factors}",
         f"  structures  {_counted(about.factorizations, 'factorization')}",
-        f"  batches     {about.batches}, of up to {about.lanes} scenarios side by side",
+        f"  batches     {about.batches}, of up to {about.lanes} scenarios {manner}",
         f"  time        about {_duration(about.seconds)} on one core: {trial.steps:.0f} steps on average, "
         f"timed on the first {min(256, int(trial.steps))} steps of up to 8 scenarios",
         f"  disk        about {size_text(about.disk)}",

@@ -275,11 +275,23 @@ def weighted_sums(values: FloatArray, weights: FloatArray) -> FloatArray:
 
 
 def _block_inverse(matrix: sp.csr_array, owner: IntArray) -> sp.csr_array:
-    """Inverse of a matrix with one symmetric block for each vehicle."""
-    blocks = []
-    for vehicle in np.unique(owner):
-        own = np.flatnonzero(owner == vehicle)
-        block = matrix[own[0] : own[-1] + 1, own[0] : own[-1] + 1].toarray()
-        inverse = np.linalg.inv(0.5 * (block + block.T))
-        blocks.append(0.5 * (inverse + inverse.T))
-    return sp.csr_array(sp.block_diag(blocks, format="csr"))
+    """Inverse of a matrix with one symmetric block for each vehicle; blocks of one size are inverted together."""
+    first, rank, size = np.unique(owner, return_index=True, return_inverse=True, return_counts=True)[1:]
+    entries = matrix.tocoo()
+    block = rank[entries.row]
+    rows, columns, values = [], [], []
+    for n in np.unique(size):
+        of_size = np.flatnonzero(size == n)
+        place = np.full(len(size), -1)
+        place[of_size] = np.arange(len(of_size))
+        own = place[block] >= 0
+        row, column, at = entries.row[own], entries.col[own], block[own]
+        dense = np.zeros((len(of_size), n, n))
+        dense[place[at], row - first[at], column - first[at]] = entries.data[own]
+        inverse = np.linalg.inv(0.5 * (dense + dense.transpose(0, 2, 1)))
+        values.append(0.5 * (inverse + inverse.transpose(0, 2, 1)).ravel())
+        here = first[of_size][:, None] + np.arange(n)
+        rows.append(np.repeat(here, n, axis=1).ravel())
+        columns.append(np.tile(here, (1, n)).ravel())
+    where = (np.concatenate(rows), np.concatenate(columns)) if rows else (np.empty(0, int), np.empty(0, int))
+    return sp.csr_array(sp.coo_array((np.concatenate([np.empty(0), *values]), where), shape=matrix.shape))

@@ -51,12 +51,18 @@ class ElementLaw:
 
     def force(self, e: FloatArray, rate: FloatArray, state: Any) -> FloatArray:
         """Those of the element."""
-        return np.asarray(self._asked("force", e, rate, state), dtype=np.float64)
+        return self._shaped("force", self._asked("force", e, rate, state), (len(e),))
 
     def blocks(self, e: FloatArray, rate: FloatArray, state: Any) -> tuple[FloatArray, FloatArray]:
         """Its tangents (m, m)."""
-        k, c = self._asked("tangent", e, rate, state)
-        return np.asarray(k, dtype=np.float64), np.asarray(c, dtype=np.float64)
+        both, shape = self._asked("tangent", e, rate, state), (len(e), len(e))
+        try:
+            k, c = both
+        except (TypeError, ValueError) as error:
+            raise AnalysisError(
+                f"{self._named} says no pair of derivatives, to u and to v, in tangent"
+            ) from error
+        return self._shaped("tangent", k, shape), self._shaped("tangent", c, shape)
 
     def tangent(self, e: FloatArray, rate: FloatArray, state: Any) -> tuple[FloatArray, FloatArray]:
         """The diagonals of its tangents (m,)."""
@@ -77,16 +83,45 @@ class ElementLaw:
         Raises
         ------
         AnalysisError
-            If it raises anything itself.
+            If it raises anything itself, or leaves the program.
+        """
+        u, v = e.copy(), rate.copy()  # it may keep them, or change them
+        try:
+            return getattr(self.element, what)(u, v, state)
+        except (Exception, SystemExit) as error:
+            raise AnalysisError(
+                f"{self._named} fails in {what}: {type(error).__name__}: {error} ({_place_of(error)})"
+            ) from error
+
+    @property
+    def _named(self) -> str:
+        return f"element {type(self.element).__name__}"
+
+    def _shaped(self, what: str, said: Any, shape: tuple[int, ...]) -> FloatArray:
+        """Numbers that a method of the element says.
+
+        Raises
+        ------
+        AnalysisError
+            If they are no numbers, or too many or too few.
         """
         try:
-            return getattr(self.element, what)(e, rate, state)
-        except Exception as error:
-            place = traceback.extract_tb(error.__traceback__)[-1]
+            found = np.asarray(said, dtype=np.float64)
+        except (TypeError, ValueError) as error:
+            raise AnalysisError(f"{self._named} says what are no numbers in {what}: {error}") from error
+        if found.shape != shape:
             raise AnalysisError(
-                f"element {type(self.element).__name__} fails in {what}: {type(error).__name__}: {error} "
-                f"({Path(place.filename).name}, line {place.lineno})"
-            ) from error
+                f"{self._named} says an array of the shape {found.shape} in {what}; it must have the shape {shape}"
+            )
+        return found
+
+
+def _place_of(error: BaseException) -> str:
+    """File and line of the element, not of what it calls, where an exception passed last."""
+    frames = traceback.extract_tb(error.__traceback__)
+    own = frames[min(1, len(frames) - 1)].filename  # the first frame is that of the call
+    place = next(frame for frame in reversed(frames) if frame.filename == own)
+    return f"{Path(place.filename).name}, line {place.lineno}"
 
 
 class _WithSystem(Protocol):
@@ -116,7 +151,7 @@ def with_nonlinear_element(
     Raises
     ------
     InputError
-        If a d.o.f. is unknown or named twice, or forces or tangents have another shape.
+        If a d.o.f. is unknown or named twice, or forces or tangents at rest have another shape or are not finite.
 
     Examples
     --------
@@ -144,6 +179,8 @@ def with_nonlinear_element(
     for what, found, shape in (("force", force, (m,)), ("tangent", k, (m, m)), ("tangent", c, (m, m))):
         if np.shape(found) != shape:
             raise InputError(f"must have the shape {shape}", field=what, value=np.shape(found))
+        if not np.isfinite(np.asarray(found, dtype=np.float64)).all():
+            raise InputError("must be finite numbers at rest", field=what, value=np.asarray(found).tolist())
     unit = sp.coo_array((np.ones(m), (np.arange(m), at)), shape=(m, len(system.dof_names)))
     rows = sp.csr_array(sp.csr_array(unit) @ system.elimination)
     group = SpringRows(name, ElementLaw(element), rows, np.zeros(m))

@@ -47,12 +47,15 @@ def _with(body: _Body, item: OwnElement) -> _Body:
         return with_nonlinear_element(body, element, item.dofs, name=item.name or item.element)
     except InputError as error:
         if error.field in ("force", "tangent"):
-            rule = f"has a {error.field} of the shape {error.value}; it {error.rule}"
+            of = f"of the shape {error.value}" if isinstance(error.value, tuple) else f"of {error.value}"
+            rule = f"has a {error.field} {of}; it {error.rule}"
             raise InputError(rule, field="element", value=item.element) from error
         more: Mapping[str, Any] = {"value": error.value} if isinstance(error.value, str) else {}
         raise InputError(error.rule, field="dofs", fix=error.fix, **more) from error
-    except Exception as error:
-        raise InputError(f"fails at rest: {_said(error)}", field="element", value=item.element) from error
+    except (Exception, SystemExit) as error:
+        raise InputError(
+            f"fails at rest: {_said(error, item.file)}", field="element", value=item.element
+        ) from error
 
 
 def _class_of(file: Path, name: str) -> Any:
@@ -63,7 +66,7 @@ def _class_of(file: Path, name: str) -> Any:
     module = module_from_spec(spec)
     try:
         spec.loader.exec_module(module)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise InputError(f"cannot be run: {_said(error, file)}", field="file", value=file.name) from error
     known = [
         key
@@ -87,8 +90,8 @@ def _made(kind: Any, item: OwnElement) -> Any:
         raise InputError(f"do not fit {takes}: {error}", field="arguments") from error
     try:
         return kind(**item.arguments)
-    except Exception as error:
-        rule = f"cannot be made: {_said(error)}"
+    except (Exception, SystemExit) as error:
+        rule = f"cannot be made: {_said(error, item.file)}"
         raise InputError(rule, field="element", value=item.element) from error
 
 
@@ -104,11 +107,11 @@ def _require_method(element: Any, name: str, kind: str) -> None:
         raise InputError(rule, field="element", value=kind) from error
 
 
-def _said(error: Exception, file: Path | None = None) -> str:
+def _said(error: BaseException, file: Path) -> str:
     """What an error says, and in which line of a file it arose."""
     line = error.lineno if isinstance(error, SyntaxError) else None
-    trace = error.__traceback__
-    while trace is not None and file is not None and line is None:
+    trace = error.__traceback__ if line is None else None
+    while trace is not None:
         if Path(trace.tb_frame.f_code.co_filename) == file:
             line = trace.tb_lineno
         trace = trace.tb_next

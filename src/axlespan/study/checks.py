@@ -163,8 +163,9 @@ class Whole(Checked):
     def read(self, raw: Any) -> int:
         """Return the number."""
         if isinstance(raw, bool) or not isinstance(raw, (int, float)) or raw != raw or raw % 1 != 0:
+            such = min(max(50, self.at_least), self.at_most)
             raise InputError(
-                "must be a whole number", value=raw, fix="Write it without unit and quotes, as in 50"
+                "must be a whole number", value=raw, fix=f"Write it without unit and quotes, as in {such}"
             )
         if not self.at_least <= raw <= self.at_most:
             bound = f"least {self.at_least}" if raw < self.at_least else f"most {self.at_most}"

@@ -222,7 +222,7 @@ def test_a_store_is_of_one_study(study, study_file, tmp_path):
     with pytest.raises(InputError, match=r"holds a study already\. Use --resume"):
         study.run(tmp_path / "out")
     other = Study.load(study_file(WITH_HISTORIES.replace("0.9, 1.1", "0.9, 1.2"), "other.yaml"))
-    with pytest.raises(InputError, match="holds another study"):
+    with pytest.raises(InputError, match="holds another study: its study.yaml or base.yaml, or a file that the base"):
         other.run(tmp_path / "out", resume=True)
     (tmp_path / "full").mkdir()
     (tmp_path / "full" / "notes.txt").write_text("mine")

@@ -57,6 +57,14 @@ class StepNotConverged(AnalysisError):
         super().__init__(message)
 
 
+def left_over(iterations: int, residual: float, where: str) -> str:
+    """How an iteration ended that did not converge."""
+    count = f"{iterations} iteration{'s' if iterations != 1 else ''}"
+    if np.isnan(residual):
+        return f"{count}, the force at {where} is not a number"
+    return f"{count}, residual {residual:.3g} N, worst at {where}"
+
+
 @dataclass(frozen=True, eq=False)
 class _Group:
     """Wheels whose interfaces do not feel each other: rows (n_group, n_wheel) and compliance."""
@@ -385,10 +393,10 @@ class NonlinearCoupling:
         else:
             assert field is not None
             where = f"spring {field.springs.names[int(field.active[error.row - w])]}"
+        said = left_over(len(error.residuals), error.residuals[-1], where)
         message = (
-            f"step {step}, t = {step * self._dt:.6g} s: the interface of wheels and springs did not converge in "
-            f"{len(error.residuals)} iterations (residual {error.residuals[-1]:.3g} N, worst at {where}). Use a smaller "
-            "time step, or a law without jumps of its tangent"
+            f"step {step}, t = {step * self._dt:.6g} s: the interface of wheels and springs did not converge "
+            f"({said}). Use a smaller time step, or a law without jumps of its tangent"
         )
         return StepNotConverged(message, where, error.residuals[-1], len(error.residuals))
 

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from axlespan.errors import AnalysisError
 from axlespan.interaction.contact_system import Stretch
 from axlespan.interaction.convoy import Convoy
-from axlespan.interaction.nonlinear.contact import NonlinearCoupling, StepNotConverged
+from axlespan.interaction.nonlinear.contact import NonlinearCoupling, StepNotConverged, left_over
 from axlespan.interaction.nonlinear.substeps import Substeps
 from axlespan.interaction.records.recorder import Recorder
 
@@ -83,10 +83,11 @@ class StepCutting:
 
     def _given_up(self, step: int, error: StepNotConverged) -> AnalysisError:
         dt, parts = self.coupling.time_step, 2**self.cuts
+        last = left_over(error.iterations, error.residual, error.where)
         return AnalysisError(
             f"step {step}, t = {step * dt:.6g} s: the interface of wheels and springs did not converge as a whole, nor in "
-            f"{parts} parts of {dt / parts:.3g} s ({error.iterations} iterations of the last one tried, residual "
-            f"{error.residual:.3g} N, worst at {error.where}). Use a smaller time step, or a law without jumps of its tangent"
+            f"{parts} parts of {dt / parts:.3g} s (the last one tried: {last}). Use a smaller time step, or a law without "
+            "jumps of its tangent"
         )
 
     def _tell(self) -> None:

@@ -21,7 +21,7 @@ from axlespan.study.sweep.peaks import has_passed
 from axlespan.study.sweep.planning import MOST_LANES, count_factorizations, count_tasks, lanes_for
 from axlespan.study.sweep.recipe import Recipe
 from axlespan.study.sweep.scenarios import Scenarios
-from axlespan.study.sweep.workshop import Workshop, together, workshop_of
+from axlespan.study.sweep.workshop import Workshop, goes_alone, together, workshop_of
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -56,6 +56,7 @@ class Trial:
     built: int  # how many were looked at
     passed: int  # how many of them have the train off the structure at their end
     cautions: tuple[str, ...]
+    one_by_one: bool = False  # whether scenarios cannot advance side by side
 
 
 @dataclass(frozen=True)
@@ -69,6 +70,7 @@ class Estimate:
     seconds: float  # of all workers together, divided by their number
     disk: float  # [byte]
     memory: float  # of one worker beside the program itself [byte]
+    one_by_one: bool = False  # whether scenarios of a batch go one after another
 
 
 def try_out(
@@ -123,6 +125,7 @@ def try_out(
         built=len(plans),
         passed=sum(has_passed(plan) for plan in plans),
         cautions=tuple(notes),
+        one_by_one=any(goes_alone(plan) for plan in plans),
     )
 
 
@@ -173,9 +176,9 @@ def _kept_bytes(recipe: Recipe, plan: Plan) -> float:
 
 
 def lanes_in_memory(trial: Trial, workers: int, free: float) -> int:
-    """Scenarios side by side that the memory of one worker holds."""
+    """Scenarios in a batch that the memory of one worker holds; few where they go one by one, as a batch is lost whole."""
     room = min(_SHARE * free / workers, _LARGEST)
-    return int(np.clip(room / trial.memory, 1, MOST_LANES))
+    return int(np.clip(room / trial.memory, 1, _LANES if trial.one_by_one else MOST_LANES))
 
 
 def estimate(
@@ -192,5 +195,12 @@ def estimate(
     work = march + n * trial.building + factors * trial.structure
     wide = min(lanes, max(1, -(-n // factors)))
     return Estimate(
-        n, factors, batches, lanes, work / workers, n * (columns * _ROW + trial.kept), wide * trial.memory
+        n,
+        factors,
+        batches,
+        lanes,
+        work / workers,
+        n * (columns * _ROW + trial.kept),
+        wide * trial.memory,
+        trial.one_by_one,
     )

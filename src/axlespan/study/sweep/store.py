@@ -312,7 +312,7 @@ def _require_same(folder: Path, header: Header, resume: bool) -> None:
         raise InputError("holds a study already", place=place, fix=fix)
     if known.digest != header.digest:
         raise InputError(
-            "holds another study: its files study.yaml and base.yaml differ from these",
+            "holds another study: its study.yaml or base.yaml, or a file that the base names, differs from these",
             place=place,
             fix="Name another folder with -o, or bring the study back to what it was",
         )

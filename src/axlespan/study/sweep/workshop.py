@@ -217,13 +217,18 @@ class Workshop:
         )
 
 
+def goes_alone(plan: Plan) -> bool:
+    """Whether a scenario is computed by itself, with nothing beside it."""
+    # bases that are refined until the worst of a group is good enough would depend on the group
+    s = plan.settings
+    return s.coupling != "direct" or s.basis_tolerance is not None or plan.is_nonlinear
+
+
 def together(plan: Plan) -> Any:
     """What scenarios must share to be computed side by side."""
     s = plan.settings
     basis = s.basis if isinstance(s.basis, str) else id(s.basis)
-    # bases that are refined until the worst of a group is good enough would depend on the group, and what is nonlinear
-    # goes one by one
-    alone = id(plan) if s.coupling != "direct" or s.basis_tolerance is not None or plan.is_nonlinear else None
+    alone = id(plan) if goes_alone(plan) else None
     footprint = (
         (s.footprint, s.sleepers) if basis != "full" else None
     )  # the basis holds the shapes of its loads
