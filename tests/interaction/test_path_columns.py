@@ -63,6 +63,23 @@ def test_compliance_and_response(loaded, bump):
     np.testing.assert_allclose(columns.response(load), expected, atol=1e-13 * np.abs(expected).max())
 
 
+def test_wheels_that_load_two_places_far_apart():
+    """A line that is the mean of two others, whose d.o.f. do not lie next to one another."""
+    integrator = chain(np.full(N + 1, 50.0))
+    columns = PathColumns(integrator, np.arange(N), N)
+    first = np.array([[200, 203, 205, 1500], [208, 212, 1400, 1412]])
+    dofs = np.concatenate([first[..., None] + np.arange(3), first[..., None] + 1200 + np.arange(3)], axis=2)
+    dofs %= N
+    weights = np.random.default_rng(4).uniform(0.5, 1.0, dofs.shape)
+    weights[:, ::2, 3:] = 0.0  # every other wheel stands on one of the lines alone
+    columns.hold(dofs[weights != 0.0])
+    assert columns.compliance.shape[1] < 1200
+    result = path_compliance(columns, columns.position[dofs], weights)
+    for k in range(len(dofs)):
+        expected = dense(integrator, dofs[k], weights[k])
+        assert np.abs(result[k] - expected).max() <= 1e-14 * np.abs(expected).max()
+
+
 def test_alike_without_numba(monkeypatch):
     integrator = chain(np.full(N + 1, 50.0))
     dofs, weights = rows(np.random.default_rng(8), 2, 5)

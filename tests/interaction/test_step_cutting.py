@@ -357,7 +357,7 @@ def test_a_compiled_loop_goes_on_after_a_cut(stubborn):
 # --- input -------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("cuts", [-1, 11, 1.5, True])
+@pytest.mark.parametrize("cuts", [-1, 11, 1.5, True, "two", None, float("nan")])
 def test_wrong_numbers_of_cuts(cuts):
     with pytest.raises(InputError, match=r"cuts = .*: must be a whole number from 0 to 10"):
         asp.simulate(careful(), time_step=DT, steps=10, cuts=cuts)

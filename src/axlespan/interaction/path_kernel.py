@@ -142,14 +142,17 @@ def sandwich(Z: Any, offset: Any, low: Any, high: Any, local: Any, weights: Any,
                 if highest[j] > reach and lowest[j] < limit:
                     first, last = min(first, lowest[j]), max(last, highest[j])
             first, last = max(first, reach), min(last, limit)
-            for a in range(0, count[i], 4):
-                p0, p1, p2, p3 = place[i, a], place[i, a + 1], place[i, a + 2], place[i, a + 3]
-                o0, o1, o2, o3 = offset[p0], offset[p1], offset[p2], offset[p3]
-                first = max(first, o0, o1, o2, o3)
-                last = min(last, o0 + width, o1 + width, o2 + width, o3 + width)
             if first < last:
                 row[first:last] = 0.0
-            for a in range(0, count[i], 4):
+            alike = True  # whether all rows hold all of that; not if a wheel loads places far apart
+            for a in range(count[i]):
+                begin = offset[place[i, a]]
+                alike = alike and begin <= first and last <= begin + width
+            for a in range(0 if alike else count[i]):
+                p0, begin = place[i, a], offset[place[i, a]]
+                for c in range(max(first, begin), min(last, begin + width)):
+                    row[c] += weight[i, a] * Z[p0, c - begin]
+            for a in range(0, count[i] if alike else 0, 4):
                 p0, p1, p2, p3 = place[i, a], place[i, a + 1], place[i, a + 2], place[i, a + 3]
                 w0, w1, w2, w3 = weight[i, a], weight[i, a + 1], weight[i, a + 2], weight[i, a + 3]
                 if first < last:

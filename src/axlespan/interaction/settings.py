@@ -186,7 +186,8 @@ def settings_for(
 
 
 def _cuts(given: int) -> int:
-    if isinstance(given, bool) or int(given) != given or not 0 <= given <= MOST_CUTS:
+    whole = isinstance(given, int | np.integer) and not isinstance(given, bool)
+    if not whole or not 0 <= given <= MOST_CUTS:
         raise InputError(f"must be a whole number from 0 to {MOST_CUTS}", field="cuts", value=given)
     return int(given)
 

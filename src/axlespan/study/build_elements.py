@@ -112,7 +112,7 @@ def _said(error: BaseException, file: Path) -> str:
     line = error.lineno if isinstance(error, SyntaxError) else None
     trace = error.__traceback__ if line is None else None
     while trace is not None:
-        if Path(trace.tb_frame.f_code.co_filename) == file:
+        if Path(trace.tb_frame.f_code.co_filename).resolve() == file.resolve():
             line = trace.tb_lineno
         trace = trace.tb_next
     words = error.msg if isinstance(error, SyntaxError) else str(error)

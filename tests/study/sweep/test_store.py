@@ -217,12 +217,21 @@ def test_two_runs_do_not_share_a_store(study, tmp_path):
     assert not (folder / "store.json").exists()
 
 
+def test_what_a_store_is_of_is_written_again_where_it_is_gone(study, tmp_path):
+    study.run(tmp_path / "out")
+    file = tmp_path / "out" / "study.yaml"
+    text = file.read_text()
+    file.unlink()
+    assert study.run(tmp_path / "out", resume=True).failed == 0
+    assert file.read_text() == text
+
+
 def test_a_store_is_of_one_study(study, study_file, tmp_path):
     study.run(tmp_path / "out")
     with pytest.raises(InputError, match=r"holds a study already\. Use --resume"):
         study.run(tmp_path / "out")
     other = Study.load(study_file(WITH_HISTORIES.replace("0.9, 1.1", "0.9, 1.2"), "other.yaml"))
-    with pytest.raises(InputError, match="holds another study: its study.yaml or base.yaml, or a file that the base"):
+    with pytest.raises(InputError, match=r"holds another study: its study\.yaml or base\.yaml, or a file"):
         other.run(tmp_path / "out", resume=True)
     (tmp_path / "full").mkdir()
     (tmp_path / "full" / "notes.txt").write_text("mine")

@@ -106,6 +106,7 @@ def fill_system(
     in_order = True  # wheels of one train on one line: behind one that is out of reach, all are
     for r in range(wheels[0] + 1, wheels[1]):
         in_order = in_order and numbers[r, 0] and numbers[r, 1] <= numbers[r - 1, 1]
+        in_order = in_order and numbers[r, 2] <= numbers[r - 1, 2]
     for r in range(wheels[0], wheels[1]):
         if numbers[r, 0] == 0:
             continue

@@ -120,6 +120,8 @@ class Store:
                 if (folder / HEADER).exists():
                     _require_same(folder, header, resume)
                     header = _read_header(folder)
+                    for name in [name for name in texts if not (folder / name).exists()]:
+                        write_whole(folder / name, texts[name].encode())
                 else:
                     _begin(folder, header, texts)
                 store = cls(folder, header)
