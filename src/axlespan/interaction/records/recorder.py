@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -224,6 +224,8 @@ class Recorder:
 
     def _take(self, steps: IntArray, positions: FloatArray, tape: LaneTape) -> None:
         """Move what is asked for into the histories."""
+        # All that reads forces reads them faster in one piece.
+        tape = replace(tape, forces=np.ascontiguousarray(tape.forces))
         first, second, third, _ = self._ends
         reactions = self.reactions.of(steps, tape.sums[:, first:second], positions, tape.forces)
         self.balance.look(steps, tape.sums[:, :first], reactions, positions, tape.forces)
