@@ -98,7 +98,7 @@ def run(runs: int, quick: bool = False) -> list[Row]:
     many, short, lanes = (60, 12, 8) if quick else (STEPS, SHORT, 32)
     literal = literal_step(integrator, structure.line().path_dofs)
     cost: dict[str, float] = {}
-    passage, count = crossing(structure, start=0.0), 2000 if quick else WHOLE
+    passage, count = crossing(structure, start=0.0), WHOLE
 
     def repeated(step: Callable[[], object], count: int) -> dict[str, float | str]:
         begun = time.process_time()
