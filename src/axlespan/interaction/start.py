@@ -120,7 +120,10 @@ def _stand(drafts: Sequence[Draft], factors: StartFactors) -> None:
     plan = drafts[0].plan
     external = plan.forces.static(0.0)
     u_0 = factors.stiffness.solve(external) if np.any(external) else None
-    standing = [draft for draft in drafts if np.any(draft.rows.carried & ~draft.entering)]
+    there = [draft for draft in drafts if np.any(draft.rows.carried & ~draft.entering)]
+    # Forces of vehicles that are statically determinate do not ask how the structure gives way.
+    known = [draft for draft in there if not any(np.any(group.kind.stiffness) for group in draft.groups)]
+    standing = [draft for draft in there if draft not in known]
     responses = None
     if standing:
         lanes = [(d.rows.dofs[d.loading], d.rows.weights[0][d.loading]) for d in standing]
@@ -136,6 +139,12 @@ def _stand(drafts: Sequence[Draft], factors: StartFactors) -> None:
             amounts.append(_balance(draft, level, responses.between(len(amounts))))
     if responses is not None:
         for draft, u in zip(standing, responses.under(amounts).T, strict=True):
+            draft.structure.u[:] -= u
+    if known:
+        loads = [
+            d.rows.load(d.forces[d.rows.on] * ~d.entering[d.rows.on], plan.structure.size) for d in known
+        ]
+        for draft, u in zip(known, side_by_side(factors.stiffness, loads), strict=True):
             draft.structure.u[:] -= u
     for draft in drafts:
         if np.any(draft.entering & draft.rows.carried):
