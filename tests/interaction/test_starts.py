@@ -37,11 +37,11 @@ BRIDGES = {
 
 
 def crossings(bridge):
-    """Trains of three kinds of vehicles, ahead of the bridge, on it and partly on it."""
+    """Trains of three kinds of vehicles, ahead of the bridge, on it, and partly on it at either end."""
     mixed = Train.joined([Train.of(MASS, 2, 5.0), Train.of(LOADS), Train.of(CAR)], [4.0, 3.0])
     trains = [Train.of(MASS, 4, 3.1), Train.of(CAR, 2, 13.0), Train.of(LOADS), mixed]
     for i, train in enumerate(trains):
-        for start in (-5.0, 6.0 + i, 17.0, 24.5):
+        for start in (-5.0, 6.0 + i, 17.0, 24.5, 27.0):
             for surface in (None, WAVE):
                 more = {} if surface is None else {"irregularity": surface}
                 yield Crossing(bridge, train, speed=20.0 + start, start=start, **more)
