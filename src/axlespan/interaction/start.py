@@ -141,9 +141,7 @@ def _stand(drafts: Sequence[Draft], factors: StartFactors) -> None:
         for draft, u in zip(standing, responses.under(amounts).T, strict=True):
             draft.structure.u[:] -= u
     if known:
-        loads = [
-            d.rows.load(d.forces[d.rows.on] * ~d.entering, plan.structure.size) for d in known
-        ]
+        loads = [d.rows.load(d.forces[d.rows.on] * ~d.entering, plan.structure.size) for d in known]
         for draft, u in zip(known, side_by_side(factors.stiffness, loads), strict=True):
             draft.structure.u[:] -= u
     for draft in drafts:
