@@ -18,12 +18,21 @@ from axlespan.study.build import BuiltCase
 from axlespan.study.faults import InputErrors
 from axlespan.study.size import size_of
 from axlespan.study.sweep.peaks import has_passed
-from axlespan.study.sweep.planning import MOST_LANES, count_factorizations, count_tasks, lanes_for
+from axlespan.study.sweep.planning import (
+    MOST_LANES,
+    MOST_OF_LARGE,
+    count_factorizations,
+    count_tasks,
+    lanes_for,
+)
 from axlespan.study.sweep.recipe import Recipe
 from axlespan.study.sweep.scenarios import Scenarios
 from axlespan.study.sweep.workshop import Workshop, goes_alone, together, workshop_of
 
 FloatArray = npt.NDArray[np.float64]
+
+# D.o.f. beyond which a structure is a large one.
+_LARGE: Final = 10_000
 
 # Scenarios that are built for an estimate, steps and lanes of a trial.
 _BUILT: Final = 24
@@ -57,6 +66,7 @@ class Trial:
     passed: int  # how many of them have the train off the structure at their end
     cautions: tuple[str, ...]
     one_by_one: bool = False  # whether scenarios cannot advance side by side
+    large: bool = False  # whether the structure is a large one
 
 
 @dataclass(frozen=True)
@@ -126,6 +136,7 @@ def try_out(
         passed=sum(has_passed(plan) for plan in plans),
         cautions=tuple(notes),
         one_by_one=any(goes_alone(plan) for plan in plans),
+        large=any(plan.structure.size > _LARGE for plan in plans),
     )
 
 
@@ -178,7 +189,8 @@ def _kept_bytes(recipe: Recipe, plan: Plan) -> float:
 def lanes_in_memory(trial: Trial, workers: int, free: float) -> int:
     """Scenarios in a batch that the memory of one worker holds; few where they go one by one, as a batch is lost whole."""
     room = min(_SHARE * free / workers, _LARGEST)
-    return int(np.clip(room / trial.memory, 1, _LANES if trial.one_by_one else MOST_LANES))
+    most = MOST_OF_LARGE if trial.large else MOST_LANES
+    return int(np.clip(room / trial.memory, 1, _LANES if trial.one_by_one else most))
 
 
 def estimate(

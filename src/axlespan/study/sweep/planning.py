@@ -16,8 +16,11 @@ from axlespan.study.sweep.workshop import Task
 
 IntArray = npt.NDArray[np.int64]
 
-MOST_LANES: Final = 32
+MOST_LANES: Final = 16
 """Most scenarios side by side: beyond, what they work on does not fit into a processor's cache any more."""
+
+MOST_OF_LARGE: Final = 32
+"""The same for large structures, whose factor takes longer to read than all else."""
 
 # Scenarios that the compiled loop takes at a time: tasks of whole ones leave none half empty.
 _AT_A_TIME: Final = 8
