@@ -13,6 +13,7 @@ import numpy as np
 
 from axlespan.compiled import as_compiled
 from axlespan.interaction.fused.kernel import (
+    add_line,
     add_load,
     backward,
     eliminate,
@@ -31,7 +32,6 @@ from axlespan.interaction.nonlinear.step_kernel import (
     add_springs,
     assemble,
     free_springs,
-    free_wheels,
     remember,
     settle,
     solve_apart,
@@ -107,7 +107,7 @@ def march(
         apart_ones, iterations, needed, n_unknown = 0, 0, 0, 0
         if n_coupled:
             predict_fleet(fleet, p, late, wp, gaps[k], wheels[GAP])
-            free_wheels(into, place[k], weights[k], state, x, w, late, wheels[GAP])
+            add_line(place[k], weights[k], into, late, state, x, w, wheels[GAP])
             for i in range(n_coupled):
                 wheels[BEFORE, i], wheels[APPROACH, i] = forces[i], 0.0
             on_ground(fleet, wheels[GAP])

@@ -21,20 +21,6 @@ GAP, BEFORE, APPROACH = range(WHEEL_ROWS)
 
 
 @as_compiled
-def free_wheels(into: Any, place: Any, weights: Any, state: Any, x: Any, w: Any, late: Any, gap: Any) -> None:
-    """Add the line's displacements without the new forces to the gaps of wheels with rows (n_wheel, n_local)."""
-    u, v, a = state
-    dt, late_u, _, u_from_a, _ = late
-    for r in range(len(into)):
-        total = 0.0
-        for m in range(place.shape[1]):
-            if weights[r, m] != 0.0:
-                i = np.uint64(place[r, m])
-                total += weights[r, m] * (u[i] + (dt * v[i] + late_u * a[i]) + u_from_a * x[i + w])
-        gap[into[r]] += total
-
-
-@as_compiled
 def free_springs(springs: Any, memory: Any, state: Any, x: Any, w: Any, late: Any, room: Any) -> None:
     """Elongations and rates without the new forces; unknown are springs that deviate, or will if they go on so."""
     coded, at, B = springs[0], springs[1], springs[2]

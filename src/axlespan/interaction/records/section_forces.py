@@ -14,6 +14,7 @@ import scipy.sparse as sp
 
 from axlespan.elements.beam_sections import QUANTITIES
 from axlespan.interaction.plan import Plan
+from axlespan.interaction.records.inertia import filtered, special_steps
 from axlespan.interaction.records.substeps import Substep
 from axlespan.interaction.sensors import by_line
 from axlespan.running.path import PolynomialPath
@@ -106,17 +107,20 @@ class SectionForces:
         alpha = self._plan.settings.method.alpha
         if alpha == 0.0:
             return inertia
-        for i, step in enumerate(steps.tolist()):
+
+        def anew(i: int) -> bool:
+            step = int(steps[i])
             if step - 1 in self.released:
                 before = float(self._plan.times_of(np.array([step - 1]))[0])
-                self._inertia = self._at(before, self.released[step - 1][0][self.free_dofs])
+                self._inertia[:] = self._at(before, self.released[step - 1][0][self.free_dofs])
             for part in self.between.get(step, ()):
                 own = self._at(part.time, part.at(self.free_dofs))
-                anew = part.excess is not None
-                self._inertia = own if anew else (own + alpha * self._inertia) / (1.0 + alpha)
-            own, fresh = inertia[:, i], step == 0 or step in self.restarted
-            self._inertia = own.copy() if fresh else (own + alpha * self._inertia) / (1.0 + alpha)
-            inertia[:, i] = self._inertia
+                fresh = part.excess is not None
+                self._inertia[:] = own if fresh else (own + alpha * self._inertia) / (1.0 + alpha)
+            return step == 0 or step in self.restarted
+
+        special = special_steps(steps, self.restarted, self.released, self.between)
+        filtered(inertia.T, alpha, self._inertia, special, anew)
         return inertia
 
     def _at(self, time: float, accelerations: FloatArray) -> FloatArray:
