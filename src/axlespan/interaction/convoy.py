@@ -119,6 +119,12 @@ class Convoy:
             return self.structure.path_load(rows.held[0], rows.weights[0], weights)
         return self.structure.path_load(stretch.forced_held[k], stretch.forced_weights[k], weights)
 
+    def predict(self, stretch: Stretch, k: int, external: FloatArray | None) -> FloatArray | None:
+        """Advance the structure under all but the new contact forces of the vehicles; returns :meth:`known_load`."""
+        known = self.known_load(stretch, k)
+        self.structure.predict(None if external is None else self.vectors @ external, known)
+        return known
+
     def tape_of(self, lane: int) -> LaneTape:
         """The tape of one lane."""
         dofs = self.lanes[lane].recorder.selected

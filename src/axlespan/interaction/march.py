@@ -32,8 +32,7 @@ def couple_directly(convoy: Convoy, stretch: Stretch, k: int, external: FloatArr
         If a contact system is not positive definite.
     """
     structure, fleet = convoy.structure, convoy.fleet
-    known = convoy.known_load(stretch, k)
-    structure.predict(None if external is None else convoy.vectors @ external, known)
+    known = convoy.predict(stretch, k, external)
     if fleet is None:
         structure.take(None, known)
         return convoy.joint.weight

@@ -177,8 +177,7 @@ class NonlinearCoupling:
     ) -> tuple[FloatArray, FloatArray, FloatArray, int]:
         """Predict both bodies and solve the interface; forces, approaches and free approaches (n_coupled,), iterations."""
         structure, fleet, into = convoy.structure, convoy.fleet, stretch.into
-        known = convoy.known_load(stretch, k)
-        structure.predict(None if external is None else convoy.vectors @ external, known)
+        convoy.predict(stretch, k, external)
         if fleet is not None:
             fleet.predict()
         self.field.predict(structure, fleet)

@@ -35,8 +35,7 @@ class IterativeCoupling:
             If the step does not converge, with the step, the residual and a remedy.
         """
         structure, fleet = convoy.structure, convoy.fleet
-        known = convoy.known_load(stretch, k)
-        structure.predict(None if external is None else convoy.vectors @ external, known)
+        known = convoy.predict(stretch, k, external)
         if fleet is None:
             structure.take(None, known)
             return convoy.joint.weight

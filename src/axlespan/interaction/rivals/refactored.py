@@ -26,8 +26,7 @@ def couple_by_refactoring(
 ) -> FloatArray:
     """One step of a single lane, with a factorization if there are wheels on the structure."""
     structure, fleet, into = convoy.structure, convoy.fleet, stretch.into
-    known = convoy.known_load(stretch, k)
-    structure.predict(None if external is None else convoy.vectors @ external, known)
+    known = convoy.predict(stretch, k, external)
     if fleet is None:
         structure.take(None, known)
         return convoy.joint.weight
