@@ -1,7 +1,7 @@
 """A track over a bridge and before and behind it, or on the ground alone, as a structure.
 
 Wheels run on the rails. The last spring under each support stands on the ground, or on the running line of the
-bridge: on a node where that line runs on beams, which are cut there, else by the weights of the line. Deck and
+bridge: on a node where that line runs on beams, which get nodes there, else by the weights of the line. Deck and
 rails move apart from each other along the line; only vertical forces pass.
 """
 
@@ -45,6 +45,9 @@ IntArray = npt.NDArray[np.int64]
 HALF_GAUGE = 0.75
 _SIDES = ("left", "right")
 _MOST_RAIL_ELEMENTS = 20
+# A deck is not cut into shorter beams, in spacings of the supports; a support so near to a node that cannot move hangs on
+# the beam.
+_SHORTEST = 0.2
 # Modes of the deck that modal damping acts on unless it says how many, as for large models without track.
 _DECK_MODES = 40
 
@@ -114,7 +117,7 @@ def with_track(
     on_deck = layout.position[layout.on_deck]
     cut = bridge
     for name in names:
-        cut = cut_at(cut, on_deck, name)
+        cut = cut_at(cut, on_deck, name, shortest=_SHORTEST * track.spacing)
     assert cut.model is not None
     damping = cut.model.damping
     model = cut.model.with_damping(None)
