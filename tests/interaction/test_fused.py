@@ -7,10 +7,11 @@ from axlespan.bridges import ballasted_track, simple_span, with_track
 from axlespan.dynamics.alpha import Alpha
 from axlespan.interaction import runs as module
 from axlespan.interaction.crossing import Crossing
+from axlespan.interaction.fused.alike import AlikeTrains
 from axlespan.interaction.fused.march import FusedMarch
 from axlespan.interaction.simulate import simulate_many
 from axlespan.irregularity import Harmonic
-from axlespan.vehicles.simple import axle_loads, sprung_mass
+from axlespan.vehicles.simple import axle_loads, rigid_body, sprung_mass
 from axlespan.vehicles.train import Train
 
 pytest.importorskip("numba")
@@ -72,6 +73,49 @@ def test_same_numbers(structure, tolerance, alpha, count, monkeypatch):
         assert one.checks["equilibrium_residual"] < 1e-7
 
 
+def cars(mass):
+    """Two kinds of vehicles on six wheels, of ten d.o.f. in blocks of four and two, with damped suspensions."""
+    body = rigid_body(
+        mass=mass, pitch_inertia=2.0 * mass, axles=(0.0, 4.0), stiffness=8e5, damping=2e4, unsprung_mass=700.0
+    )
+    small = sprung_mass(mass=3000.0, stiffness=1e6, damping=1e4, unsprung_mass=500.0)
+    return Train.joined([Train.of(body), Train.of(small), Train.of(body), Train.of(small)], [3.0, 2.5, 3.0])
+
+
+@pytest.mark.parametrize("structure", [SPAN, TRACK], ids=["span", "track"])
+@pytest.mark.parametrize(
+    "masses", [(2e4,) * 5, (2e4,) * 9, (2e4, 2e4, 2.1e4, 2e4)], ids=["five", "nine", "unequal"]
+)
+def test_vehicles_of_equal_trains_go_side_by_side(masses, structure, monkeypatch):
+    """One of several lanes gives the numbers of its crossing alone, as do unequal trains, which go by themselves."""
+    wavy = Harmonic(amplitude=0.5e-3, wavelength=5.0)
+    known = {mass: cars(mass) for mass in masses}
+    cases = [
+        Crossing(structure, known[mass], speed=20.0 + 4.0 * i, start=20.0, irregularity=wavy)
+        for i, mass in enumerate(masses)
+    ]
+    made = []
+    real = AlikeTrains.of.__func__
+
+    def seen(*args):
+        made.append(real(AlikeTrains, *args))
+        return made[-1]
+
+    monkeypatch.setattr(AlikeTrains, "of", staticmethod(seen))
+
+    def moved(some):
+        return simulate_many(some, time_step=1e-3, steps=400, method=Alpha(-0.1), sensors={"middle": 12.5})
+
+    together = moved(cases)
+    assert {one is not None for one in made} == {len(set(masses)) == 1}
+    for case, one in zip(cases, together, strict=True):
+        (alone,) = moved([case])
+        for name in QUANTITIES:
+            a, b = getattr(one, name), getattr(alone, name)
+            part = 1e-9 if structure is TRACK and name in ("sensor_velocity", "support_reaction") else 1e-10
+            assert np.abs(a - b).max() <= part * np.abs(b).max(), name
+
+
 def test_an_indefinite_contact_system_is_refused():
     """The small factorization says so, and solves what is definite within the reach of its rows."""
     from axlespan.interaction.fused.contact_kernel import solve_system
@@ -117,11 +161,17 @@ def test_contact_systems_are_those_of_plain_numpy(spread):
     vehicles[1:4, 1:4], vehicles[4:7, 4:7] = 3.0 * np.eye(3) + 0.5, 2.0 * np.eye(3) + 0.25
     at = np.array([0, 1, 2, 4, 5])
     room, S, reach = room_for(5, 4), np.full((6, 6), np.nan), np.zeros(6, dtype=np.int64)
-    path = (row_of, offset, low, high, Z.reshape(-1), width)
-    pack_rows((0,) * lanes, place, weights, path, room)
+    path = (
+        row_of,
+        np.stack([np.arange(n) * width - offset, low, high, offset], axis=1),
+        Z.reshape(-1),
+        width,
+    )
+    on = np.array([0, 1, 3, 4])
+    pack_rows((0,) * lanes, on, place, weights, path, room)
     own_vehicles = np.triu(vehicles[1:, 1:])
     ends = np.array([int(np.flatnonzero(row).max()) for row in own_vehicles])
-    fill_system((0, 5), at, 0, 6, (own_vehicles.ravel(), ends, 0), path, room, S, reach)
+    fill_system(on, at, 0, 6, (own_vehicles.ravel(), ends, 0), path, room, S, reach)
     wanted = vehicles[1:, 1:].copy()
     wanted[np.ix_(at, at)] += E @ full @ E.T
     upper = np.triu_indices(6)
@@ -144,10 +194,16 @@ def test_a_wheel_out_of_reach_does_not_hide_one_that_loads_two_lines():
     E = np.zeros((3, n))
     np.put_along_axis(E, place, weights, axis=1)
     room, S, reach = room_for(3, 4), np.full((3, 3), np.nan), np.zeros(3, dtype=np.int64)
-    path = (np.arange(n), offset, low, high, Z.reshape(-1), width)
-    pack_rows((0,), place, weights, path, room)
+    path = (
+        np.arange(n),
+        np.stack([np.arange(n) * width - offset, low, high, offset], axis=1),
+        Z.reshape(-1),
+        width,
+    )
+    on = np.arange(3)
+    pack_rows((0,), on, place, weights, path, room)
     vehicles = (np.eye(3).ravel(), np.arange(3), 0)
-    fill_system((0, 3), np.arange(3), 0, 3, vehicles, path, room, S, reach)
+    fill_system(on, np.arange(3), 0, 3, vehicles, path, room, S, reach)
     wanted = np.eye(3) + E @ full @ E.T
     assert wanted[0, 2] > 0.01
     np.testing.assert_allclose(S[np.triu_indices(3)], wanted[np.triu_indices(3)], atol=1e-12)

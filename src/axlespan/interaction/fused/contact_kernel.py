@@ -34,36 +34,48 @@ def room_for(n_wheel: int, n_local: int) -> Any:
 
 
 @as_compiled
-def pack_rows(lanes: Any, place: Any, weights: Any, path: Any, room: Any) -> None:
-    """Sort rows (n_wheel, n_local) of wheels by their places on the path, which ``path`` gives by rows of the body.
+def pack_rows(lanes: Any, on: Any, place: Any, weights: Any, path: Any, room: Any) -> None:
+    """Sort rows (n_wheel, n_local) of the wheels on the line by their places on the path.
 
-    The numbers are: entries, lowest place, highest place, pieces from the lowest (0: they lie too far apart), begin and
-    end of what their rows of Z reach, and of what these hold.
+    ``path`` gives these places by rows of the body, and for each where its row of Z begins, less the first place that
+    it holds; what that reaches, begin and end; and the first place that it holds. The numbers are: entries, lowest
+    place, highest place, pieces from the lowest (0: they lie too far apart), begin and end of what the rows of Z of a
+    wheel reach, and of what these hold.
     """
-    row_of, offset, low, high, _, width = path
+    row_of, table, _, width = path
     begins, places, values, dense, numbers = room
-    n_local = place.shape[1]
-    widest = 4 * n_local + 2 * PIECE
-    for r in range(place.shape[0]):
-        m, first, last, reach, limit, hold, until = 0, len(low), -1, len(low), 0, 0, len(low)
+    n_local, one = np.uint64(place.shape[1]), np.uint64(1)
+    widest = np.uint64(4 * place.shape[1] + 2 * PIECE)
+    for wheel in on:
+        r = np.uint64(wheel)
+        begin = end = r * n_local
+        first, last, reach, limit, hold, until = len(table), -1, len(table), 0, 0, len(table)
         for a in range(n_local):
             if weights[r, a] != 0.0:
-                q, k = row_of[np.uint64(place[r, a]) // np.uint64(len(lanes))], r * n_local + m
-                begins[k], places[k], values[k] = q * width - offset[q], q, weights[r, a]
-                first, last = min(first, q), max(last, q)
-                reach, limit = min(reach, low[q]), max(limit, high[q])
-                hold, until = max(hold, offset[q]), min(until, offset[q] + width)
-                m += 1
-        for k in range(r * n_local + m, (r + 1) * n_local if m else 0):  # loops of one length are foreseen
-            begins[k], places[k], values[k] = begins[r * n_local], places[r * n_local], 0.0
-        pieces = (last + PIECE - first) // PIECE if m else 0
-        pieces = pieces if pieces * PIECE <= widest else 0
-        for i, number in enumerate((m, first, last, pieces, reach, limit, hold, until)):
-            numbers[r, i] = number
+                place_on_path = row_of[np.uint64(place[r, a]) // np.uint64(len(lanes))]
+                q = np.uint64(place_on_path)
+                begins[end], places[end], values[end] = table[q, 0], place_on_path, weights[r, a]
+                first, last = min(first, place_on_path), max(last, place_on_path)
+                reach, limit = min(reach, table[q, 1]), max(limit, table[q, 2])
+                hold, until = max(hold, table[q, 3]), min(until, table[q, 3] + width)
+                end += one
+        for k in range(end, begin + n_local):  # loops of one length are foreseen
+            begins[k], places[k], values[k] = begins[begin], places[begin], 0.0
+        pieces = (last + PIECE - first) // PIECE
+        pieces = pieces if np.uint64(pieces * PIECE) <= widest else 0
+        numbers[r, 0], numbers[r, 1], numbers[r, 2], numbers[r, 3] = (
+            np.int64(end - begin),
+            first,
+            last,
+            pieces,
+        )
+        numbers[r, 4], numbers[r, 5], numbers[r, 6], numbers[r, 7] = reach, limit, hold, until
         if pieces:
-            dense[r * widest : r * widest + pieces * PIECE] = 0.0
-            for k in range(r * n_local, r * n_local + m):
-                dense[r * widest + places[k] - first] += values[k]
+            low = r * widest
+            for k in range(low, low + np.uint64(pieces * PIECE)):
+                dense[k] = 0.0
+            for k in range(begin, end):
+                dense[low + np.uint64(places[k] - first)] += values[k]
 
 
 @as_compiled
@@ -82,52 +94,63 @@ def entry(i: int, j: int, n_local: int, Z: Any, width: int, room: Any) -> float:
 
 
 @as_compiled
+def in_order(on: Any, numbers: Any) -> bool:
+    """Whether wheels follow one another on the path, as those of one train on one line: forward or backward."""
+    up = down = True
+    for m in range(1, len(on)):
+        r, before = np.uint64(on[m]), np.uint64(on[m - 1])
+        up = up and numbers[r, 1] >= numbers[before, 1] and numbers[r, 2] >= numbers[before, 2]
+        down = down and numbers[r, 1] <= numbers[before, 1] and numbers[r, 2] <= numbers[before, 2]
+    return up or down
+
+
+@as_compiled
 def fill_system(
-    wheels: Any, at: Any, begin: int, n: int, vehicles: Any, path: Any, room: Any, S: Any, reach: Any
+    on: Any, at: Any, begin: int, n: int, vehicles: Any, path: Any, room: Any, S: Any, reach: Any
 ) -> None:
     """Fill in the upper triangle of S (n, n) for contacts, as far as ``reach`` (n,) says.
 
     Parameters
     ----------
-    wheels : (int, int)
-        Those on the structure, first and behind the last; ``at`` are their places among the contacts.
+    on : array (n_on,)
+        Wheels on the structure; ``at`` are the places of all wheels among the contacts.
     vehicles
         Compliance of the vehicles (n, n), of which only the upper triangle is not zero, from ``begin`` on; and as far
         as its rows reach.
     """
     compliance, vehicles_reach, first_contact = vehicles
     begins, _, values, dense, numbers = room
-    Z, width, n_local = path[4], path[5], len(begins) // max(len(numbers), 1)
-    widest = 4 * n_local + 2 * PIECE
+    _, _, Z, width = path
+    n_local, one = np.uint64(len(begins) // max(len(numbers), 1)), np.uint64(1)
+    widest = np.uint64(4 * n_local + 2 * PIECE)
     for i in range(n):
         reach[i] = vehicles_reach[first_contact + i]
         for j in range(n):
             S[i, j] = compliance[begin + i * n + j]
-    in_order = True  # wheels of one train on one line: behind one that is out of reach, all are
-    for r in range(wheels[0] + 1, wheels[1]):
-        in_order = in_order and numbers[r, 0] and numbers[r, 1] <= numbers[r - 1, 1]
-        in_order = in_order and numbers[r, 2] <= numbers[r - 1, 2]
-    for r in range(wheels[0], wheels[1]):
-        if numbers[r, 0] == 0:
-            continue
-        e_0, stop = np.uint64(r * n_local), np.uint64((r + 1) * n_local)
-        for s in range(r, wheels[1]):
+    follow = in_order(on, numbers)  # then behind a wheel that is out of reach, all are
+    for m in range(len(on)):
+        r = np.uint64(on[m])
+        e_0, stop = r * n_local, (r + one) * n_local
+        low, high, hold, until = numbers[r, 4], numbers[r, 5], numbers[r, 6], numbers[r, 7]
+        for other in range(m, len(on)):
+            s = np.uint64(on[other])
             first, pieces = numbers[s, 1], numbers[s, 3]
-            if not (numbers[s, 0] and first < numbers[r, 5] and numbers[s, 2] >= numbers[r, 4]):
-                if in_order:
+            if first >= high or numbers[s, 2] < low:
+                if follow:
                     break
                 continue
             result = 0.0
-            if pieces and first >= numbers[r, 6] and first + pieces * PIECE <= numbers[r, 7]:
+            if pieces and first >= hold and first + pieces * PIECE <= until:
                 # In place: a call that hands on arrays takes longer than this.
                 for piece in range(pieces):
                     shift = first + piece * PIECE
                     row = scaled(values[e_0], read(_EIGHT, Z, np.uint64(begins[e_0] + shift)))
-                    for e in range(e_0 + np.uint64(1), stop):
+                    for e in range(e_0 + one, stop):
                         row = plus(row, values[e], read(_EIGHT, Z, np.uint64(begins[e] + shift)))
-                    result += total(times(row, read(_EIGHT, dense, np.uint64(s * widest + piece * PIECE))))
+                    dense_at = s * widest + np.uint64(piece * PIECE)
+                    result += total(times(row, read(_EIGHT, dense, dense_at)))
             else:
-                result = entry(r, s, n_local, Z, width, room)
+                result = entry(np.int64(r), np.int64(s), np.int64(n_local), Z, width, room)
             i, j = min(at[r], at[s]), max(at[r], at[s])
             S[i, j] += result
             reach[i] = max(reach[i], j)

@@ -6,7 +6,6 @@ one crossing and eight. Only to be imported where numba is.
 
 from __future__ import annotations
 
-from functools import reduce
 from typing import Any
 
 from llvmlite import ir
@@ -115,14 +114,20 @@ def _plus_size(context_of_types: Any, t: Any, s: Any) -> Any:
 
 
 def _total(context_of_types: Any, t: Any) -> Any:
-    """``t.sum()``."""
+    """``t.sum()``, of a power of two entries, by halves."""
 
     def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        entries = [
-            builder.extract_element(arguments[0], ir.Constant(ir.IntType(32), lane))
-            for lane in range(t.count)
-        ]
-        return reduce(builder.fadd, entries)
+        rest, count = arguments[0], t.count
+        while count > 1:
+            count //= 2
+            halves = [
+                builder.shuffle_vector(
+                    rest, rest, ir.Constant(ir.VectorType(ir.IntType(32), count), list(range(a, a + count)))
+                )
+                for a in (0, count)
+            ]
+            rest = builder.fadd(*halves)
+        return builder.extract_element(rest, ir.Constant(ir.IntType(32), 0))
 
     return types.float64(t), code
 

@@ -22,6 +22,7 @@ from axlespan.errors import AnalysisError
 from axlespan.interaction.bodies import PreparedStructure, StructureBody
 from axlespan.interaction.contact_system import Stretch
 from axlespan.interaction.convoy import Convoy
+from axlespan.interaction.fused.alike import AlikeTrains
 from axlespan.interaction.fused.banded_body import PIECE, BandedBody, csr_parts
 from axlespan.interaction.fused.chunk import Chunk, chunks_of
 from axlespan.interaction.records.sums import Sums
@@ -35,7 +36,7 @@ _CHUNK, _WORTH_A_CHUNK = 8, 3
 
 @cache
 def _march() -> Loop:
-    from axlespan.interaction.fused.kernel import march  # numba is an optional part
+    from axlespan.interaction.fused.march_kernel import march  # numba is an optional part
 
     return march
 
@@ -64,9 +65,18 @@ class FusedMarch:
         self._sums = _pieces(convoy.tape.watched.sums, body.rank, _CHUNK)
         for chunk in self._chunks:
             chunk.take(convoy.structure)
+        self._alike = [self._alike_in(chunk) for chunk in self._chunks]
         self._stretch: Stretch | None = None
         self._body = body
         self._compliance: dict[int, FloatArray] = {}  # by lane
+
+    def _alike_in(self, chunk: Chunk) -> AlikeTrains | None:
+        """The vehicles of a chunk side by side, if its trains are equal."""
+        if chunk.width == 1:
+            return None
+        return AlikeTrains.of(
+            self._convoy, range(chunk.lane, chunk.lane + chunk.used), chunk.width, self._fleet[6]
+        )
 
     @classmethod
     def of(cls, convoy: Convoy) -> Self | None:
@@ -112,12 +122,14 @@ class FusedMarch:
         """What makes the contact systems of each chunk: contacts, wheels among them, vehicles and the path."""
         convoy, columns = self._convoy, self._convoy.structure.columns
         Z, row_of = columns.compliance, columns.position[self._body.rows]
-        path = (row_of, columns.offset, columns.low, columns.high, Z.reshape(-1), Z.shape[1])
+        offset = columns.offset
+        table = np.column_stack([np.arange(len(Z)) * Z.shape[1] - offset, columns.low, columns.high, offset])
+        path = (row_of, np.ascontiguousarray(table), Z.reshape(-1), Z.shape[1])
         owner = convoy.joint.vehicle_of
         touched = np.zeros(int(owner.max(initial=-1)) + 1, dtype=bool)
         touched[owner[stretch.into]] = True
         result = []
-        for chunk in self._chunks:
+        for chunk, alike in zip(self._chunks, self._alike, strict=True):
             own, wheel_ends, at = [np.empty(0, np.int64)], [0], [np.empty(0, np.int64)]
             vehicles = []
             for lane in range(chunk.lane, chunk.lane + chunk.used):
@@ -129,7 +141,8 @@ class FusedMarch:
                 at.append(np.searchsorted(own[-1], into))
                 wheel_ends.append(wheel_ends[-1] + len(into))
             ends = np.cumsum([0, *map(len, own[1:])]).astype(np.int64)
-            rows = (np.concatenate(own), ends, np.array(wheel_ends, dtype=np.int64), np.concatenate(at))
+            contacts = np.concatenate(own) if alike is None else alike.places(np.concatenate(own))
+            rows = (contacts, ends, np.array(wheel_ends, dtype=np.int64), np.concatenate(at))
             begins = np.cumsum([0, *(S.size for S, _ in vehicles)])[:-1].astype(np.int64)
             compliance = np.concatenate([S.ravel() for S, _ in vehicles])
             result.append(
@@ -159,17 +172,20 @@ class FusedMarch:
         self, chunk: Chunk, stretch: Stretch, forced: bool, external: FloatArray | None, first: int, stop: int
     ) -> int:
         near, vehicles, forces, sums = self._convoy.tape.arrays
+        number = self._chunks.index(chunk)
+        alike, (place, weights, into) = self._alike[number], chunk.wheels
         result: int = _march()(
             (0,) * chunk.width,
             (0,) * self._width,
             self._numbers,
             self._structure,
             chunk.arrays(forced),
-            chunk.wheels,
+            (place, weights, into if alike is None else alike.places(into)),
             chunk.known(self._convoy.joint.weight),
             (self._vectors, np.empty((stretch.n_step, 0)) if external is None else external),
             self._fleet_of(chunk, stretch),
-            self._systems[self._chunks.index(chunk)],
+            None if alike is None else alike.arrays,
+            self._systems[number],
             (near, self._watched, vehicles, forces, sums, self._sums, chunk.lane),
             first,
             stop,

@@ -1,6 +1,6 @@
 """Consecutive steps with laws of contact and nonlinear springs in one compiled loop.
 
-The loop of :mod:`axlespan.interaction.fused.kernel` for one crossing, with the interface of wheels and springs in place
+The loop of :mod:`axlespan.interaction.fused.march_kernel` for one crossing, with the interface of wheels and springs in place
 of the contact system. A step that is out of the ordinary (a wheel on a one-sided contact lifts off or lands, no
 convergence) is not made: the loop returns, and the coupling makes it. Only to be imported where numba is.
 """
@@ -12,17 +12,10 @@ from typing import Any
 import numpy as np
 
 from axlespan.compiled import as_compiled
-from axlespan.interaction.fused.kernel import (
-    add_line,
-    add_load,
-    backward,
-    eliminate,
-    forward,
-    on_ground,
-    predict_fleet,
-    take_fleet,
-    write,
-)
+from axlespan.interaction.fused.line_kernel import add_line, add_load, standing
+from axlespan.interaction.fused.march_kernel import write
+from axlespan.interaction.fused.structure_kernel import backward, eliminate, forward
+from axlespan.interaction.fused.vehicle_kernel import on_ground, predict_fleet, take_fleet
 from axlespan.interaction.nonlinear.law_codes import COLUMN, DONE, ONE_SIDED, UNUSUAL
 from axlespan.interaction.nonlinear.step_kernel import (
     APPROACH,
@@ -49,12 +42,12 @@ def _clear(added: Any, reach: Any, shift: int) -> None:
 
 @as_compiled
 def _respond(
-    lanes: Any, width: Any, lower: Any, place: Any, weights: Any, into: Any, forces: Any, springs: Any, room: Any, wc: float,
-    added: Any, reach: Any
+    lanes: Any, width: Any, lower: Any, on: Any, place: Any, weights: Any, into: Any, forces: Any, springs: Any, room: Any,
+    wc: float, added: Any, reach: Any
 ) -> None:  # fmt: skip
     """Fill in the response of the structure to wheels and springs."""
     shift = len(width)
-    low, high = add_load(place, weights, into, forces, -wc, shift, added)
+    low, high = add_load(on, place, weights, into, forces, -wc, shift, added)
     lower_one, higher_one = add_springs(springs, room[2][DEVIATION], room[0], -wc, shift, added)
     low, high = min(low, lower_one) - shift, max(high, higher_one) - shift + 1
     if high > low:
@@ -78,6 +71,7 @@ def march(
     wheel_laws, touching, apart, scale = interface
     last, counts, history, flown = memory
     shift, w, all_known = len(width), np.uint64(len(width)), np.arange(len(known_forces))
+    on = np.zeros(len(into), np.int64)
     u_from_a, rate_from_e = late[3], late[4] / late[3]
     wheels, room, rooms = work
     active, values = room[0], room[2]
@@ -89,10 +83,13 @@ def march(
                 for i in range(len(extra)):
                     extra[i] = 0.0
                 if wp != 0.0:
-                    add_load(place[k - 1], weights[k - 1], into, forces, -wp, 0, extra)
-                    add_load(known_place[k - 1], known_weights[k - 1], all_known, known_forces, -wp, 0, extra)
+                    before = on[: standing(weights[k - 1], on)]
+                    add_load(before, place[k - 1], weights[k - 1], into, forces, -wp, 0, extra)
+                    add_load(
+                        all_known, known_place[k - 1], known_weights[k - 1], all_known, known_forces, -wp, 0, extra
+                    )  # fmt: skip
                     add_springs(springs, last[0], active, -wp, 0, extra)
-            add_load(known_place[k], known_weights[k], all_known, known_forces, -wc, 0, extra)
+            add_load(all_known, known_place[k], known_weights[k], all_known, known_forces, -wc, 0, extra)
             for t in range(factors.shape[1]):
                 if factors[k, t] != 0.0:
                     for i in range(vectors.shape[1]):
@@ -105,9 +102,10 @@ def march(
         backward(lanes, width, lower, x, n, 0)
         _clear(added, reach, shift)
         apart_ones, iterations, needed, n_unknown = 0, 0, 0, 0
+        now = on[: standing(weights[k], on)]
         if n_coupled:
             predict_fleet(fleet, p, late, wp, gaps[k], wheels[GAP])
-            add_line(place[k], weights[k], into, late, state, x, w, wheels[GAP])
+            add_line(now, place[k], weights[k], into, late, state, x, w, wheels[GAP])
             for i in range(n_coupled):
                 wheels[BEFORE, i], wheels[APPROACH, i] = forces[i], 0.0
             on_ground(fleet, wheels[GAP])
@@ -128,7 +126,7 @@ def march(
                 break
             iterations += count
             _respond(
-                lanes, width, lower, place[k], weights[k], into, forces, springs, room, wc, added, reach
+                lanes, width, lower, now, place[k], weights[k], into, forces, springs, room, wc, added, reach
             )  # fmt: skip
             if settle(springs, added, w, u_from_a, rate_from_e, room):
                 break

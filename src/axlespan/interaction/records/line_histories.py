@@ -61,8 +61,8 @@ class LineHistories:
             )
         n_kept = plan.settings.steps // plan.settings.every + 1
         # Times run fastest: extremes over them, and filters, read memory in order.
-        self._motion = np.zeros((self.sums.count - len(self.positions), n_kept))
-        self._acceleration = np.zeros((len(self.positions), n_kept))
+        self._motion = np.empty((self.sums.count - len(self.positions), n_kept))
+        self._acceleration = np.empty((len(self.positions), n_kept))
 
     def _read_rows(self, plan: Plan) -> None:
         self.positions = np.array(plan.settings.line_points, dtype=float)

@@ -109,10 +109,10 @@ class Recorder:
         n_sensor = self._sensor_rows.shape[0]
         self.histories = Histories(
             _forces(plan, n_kept),
-            np.zeros((n_kept, n_contact)),
-            {name: np.zeros((n_kept, n_vehicle)) for name in _QUANTITIES},
-            {name: np.zeros((n_kept, n_sensor)) for name in _QUANTITIES},
-            np.zeros((n_kept, len(plan.crossing.structure.system.prescribed))),
+            np.empty((n_kept, n_contact)),
+            {name: np.empty((n_kept, n_vehicle)) for name in _QUANTITIES},
+            {name: np.empty((n_kept, n_sensor)) for name in _QUANTITIES},
+            np.empty((n_kept, len(plan.crossing.structure.system.prescribed))),
         )
         parts = [self.balance.sums, self.reactions.sums, self._sensor_sums, self.line.sums]
         self.sums: Sums = Sums.together(parts) if known is None else known.sums
@@ -339,7 +339,7 @@ class Recorder:
 def _forces(plan: Plan, n_kept: int) -> FloatArray:
     """Room for contact forces (n_kept, n_contact); those of moving forces alone stay as they are."""
     if len(plan.fleet.coupled):
-        return np.zeros((n_kept, plan.rows.n_contact))
+        return np.empty((n_kept, plan.rows.n_contact))
     return np.broadcast_to(plan.fleet.weight, (n_kept, plan.rows.n_contact))
 
 

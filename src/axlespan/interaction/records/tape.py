@@ -64,7 +64,7 @@ class Tape:
     def start(self, n_step: int) -> None:
         """Make room for a stretch."""
         self.filled = 0
-        if n_step == self._n_step:
+        if n_step <= self._n_step:
             return
         self._n_step = n_step
         n_vehicle_dof, n_contact = self._sizes
