@@ -48,9 +48,12 @@ class LineResponses:
         self._whole = np.empty((self._n, count)) if 8 * self._n * count <= _KEPT else None
         self._seen = np.empty((len(self._dofs), count))
         for some in _pieces(count, self._n):
-            solved = factor.solve(_dense(loads[:, some]))
+            solved = _dense(loads[:, some])
+            factor.solve(solved, out=solved)
             self._seen[:, some] = solved[self._dofs]
-            if self._whole is not None:
+            if self._whole is not None and solved.shape == self._whole.shape:
+                self._whole = solved
+            elif self._whole is not None:
                 self._whole[:, some] = solved
 
     def _over_used(self, dofs: IntArray, weights: FloatArray) -> FloatArray | sp.csr_array:
@@ -106,7 +109,7 @@ class LineResponses:
 
 
 def _dense(columns: sp.csc_array) -> FloatArray:
-    return np.ascontiguousarray(columns.toarray())
+    return np.asarray(columns.toarray(order="C"))
 
 
 def _pieces(count: int, n: int) -> list[slice]:

@@ -22,6 +22,7 @@ from axlespan.interaction.sensors import by_line, check_sensors, sensor_rows
 from axlespan.interaction.settings import Settings
 from axlespan.interaction.surface_notes import start_notes, surface_notes
 from axlespan.interaction.traffic import require_clear_tracks
+from axlespan.linalg.arrays import block_diagonal
 from axlespan.model.motions import Constant
 from axlespan.model.system import System
 from axlespan.running.path import PolynomialPath
@@ -278,12 +279,12 @@ def _block_diagonal(blocks: Sequence[Matrices]) -> Matrices:
         raise InputError(
             "is not available for vehicles", field="damping", value="modal", fix="Use Rayleigh damping"
         )
-    stiffness = sp.csr_array(sp.block_diag([block.K for block in blocks], format="csr"))
-    mass = sp.csr_array(sp.block_diag([block.M for block in blocks], format="csr"))
+    stiffness = block_diagonal([block.K for block in blocks])
+    mass = block_diagonal([block.M for block in blocks])
     if all(block.C is None for block in blocks):
         return Matrices(stiffness, mass)
     zero = [sp.csr_array(block.K.shape) if block.C is None else block.C for block in blocks]
-    return Matrices(stiffness, mass, sp.csr_array(sp.block_diag(zero, format="csr")))
+    return Matrices(stiffness, mass, block_diagonal(zero))
 
 
 def _train_rows(crossing: Crossing, settings: Settings, moving: IntArray, like: Plan | None) -> TrainRows:

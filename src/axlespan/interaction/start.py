@@ -57,6 +57,8 @@ __all__ = [
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
+_NONE = np.empty(0, dtype=np.int64)
+
 # Forces out of balance in a static equilibrium, relative to the largest one: rounding of its displacements.
 _ROUNDING = 1e-12
 
@@ -93,8 +95,9 @@ class StartFactors:
 
     @cached_property
     def mass(self) -> Factor:
-        """Factor of M, with a trace of stiffness where a d.o.f. has no mass."""
-        return mass_factor(self._plan.structure, self._plan)
+        """Factor of M, with a trace of stiffness where a d.o.f. has no mass; of parts of M, where wheels touch only these."""
+        paths = [path.free.path_dofs for path in self._plan.rows.paths]
+        return mass_factor(self._plan.structure, self._plan, np.concatenate([*paths, _NONE]))
 
 
 def start_of(plan: Plan, factors: StartFactors | None = None) -> Start:
@@ -216,16 +219,18 @@ def _accelerate(drafts: Sequence[Draft], factors: StartFactors, kinds: Vehicles)
     plan = drafts[0].plan
     external = plan.forces.at(0.0) if plan.forces.n_term else np.zeros(plan.structure.size)
     struck: list[Draft] = []
-    nets = []
+    pushed: list[tuple[Draft, FloatArray]] = []
     for draft in drafts:
         net = _out_of_balance(draft, external)
-        if net is not None:
-            struck.append(draft)
-            nets.append(where_mass(plan.structure, net))
-    pushed = [i for i, net in enumerate(nets) if np.any(net)]
+        if net is None:
+            continue
+        struck.append(draft)
+        if np.any(net) and np.any(net := where_mass(plan.structure, net)):
+            pushed.append((draft, net))
     if pushed:
-        for i, a in zip(pushed, side_by_side(factors.mass, [nets[i] for i in pushed]), strict=True):
-            struck[i].structure.a[:] = a
+        solved = side_by_side(factors.mass, [net for _, net in pushed])
+        for (draft, _), a in zip(pushed, solved, strict=True):
+            draft.structure.a[:] = a
     lanes, rows = [], []
     for draft in struck:
         of_vehicles = draft.loading[draft.coupled_place[draft.rows.on[draft.loading]] >= 0]
@@ -238,7 +243,7 @@ def _accelerate(drafts: Sequence[Draft], factors: StartFactors, kinds: Vehicles)
     for draft in drafts:
         if not len(draft.plan.fleet.coupled):
             continue
-        lane, of_vehicles = coupled.get(id(draft), (-1, np.empty(0, dtype=np.int64)))
+        lane, of_vehicles = coupled.get(id(draft), (-1, _NONE))
         between = responses.between(lane) if responses is not None and lane >= 0 else np.zeros((0, 0))
         change = _accelerate_vehicles(draft, kinds, of_vehicles, between)
         if lane >= 0:

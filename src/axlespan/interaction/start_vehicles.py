@@ -12,6 +12,7 @@ import scipy.sparse as sp
 from axlespan.dynamics.integrator import Matrices
 from axlespan.interaction.plan import Fleet, Plan
 from axlespan.linalg.factor import Factor, factorize
+from axlespan.linalg.parts import factor_for_loads_on
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -149,16 +150,20 @@ def condensed_stiffness(fleet: Fleet) -> FloatArray:
     return result
 
 
-def mass_factor(matrices: Matrices, plan: Plan) -> Factor:
-    """Factor of M, with a trace of stiffness where a d.o.f. has no mass."""
-    diagonal = matrices.M.diagonal()
+def mass_factor(matrices: Matrices, plan: Plan, loaded: IntArray | None = None) -> Factor:
+    """Factor of M, with a trace of stiffness where a d.o.f. has no mass; ``loaded`` are d.o.f. that loads act on mostly."""
+
+    def factor_of(matrix: sp.csr_array) -> Factor:
+        return factorize(sp.csr_array(matrix), kind=plan.settings.solver, threads=plan.settings.threads)
+
     mass = matrices.M
-    if np.any(diagonal <= 0.0):
-        dt = plan.settings.time_step
-        mass = mass + (_SUBSTITUTE * 0.25 * dt**2) * matrices.K
-        if matrices.C is not None:
-            mass = mass + (_SUBSTITUTE * 0.5 * dt) * matrices.C
-    return factorize(sp.csr_array(mass), kind=plan.settings.solver, threads=plan.settings.threads)
+    if np.all(mass.diagonal() > 0.0):
+        return factor_of(mass) if loaded is None else factor_for_loads_on(loaded, mass, factor_of)
+    dt = plan.settings.time_step
+    mass = mass + (_SUBSTITUTE * 0.25 * dt**2) * matrices.K
+    if matrices.C is not None:
+        mass = mass + (_SUBSTITUTE * 0.5 * dt) * matrices.C
+    return factor_of(mass)
 
 
 def where_mass(matrices: Matrices, force: FloatArray, also: IntArray | None = None) -> FloatArray:

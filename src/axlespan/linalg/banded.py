@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from operator import itemgetter
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
+import numpy.typing as npt
 from scipy.linalg.lapack import dpbtrf, dpbtrs, dtbtrs
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-from axlespan.linalg.arrays import CsrMatrix, FloatArray, IntArray, right_hand_side, row_indices
+from axlespan.linalg.arrays import CsrMatrix, FloatArray, IntArray, right_hand_side
 from axlespan.linalg.band_blocks import NARROWEST, BandBlocks
 from axlespan.linalg.band_kernel import (
     WIDEST,
@@ -206,7 +207,7 @@ def _spread(matrix: CsrMatrix, rows: IntArray | None) -> int:
     if rows is None:  # columns are sorted
         return max(int((filled - matrix.indices[begins]).max()), 0)
     rank = _inverse(rows).astype(np.int32)
-    return max(int((rank[filled] - np.minimum.reduceat(rank[matrix.indices], begins)).max()), 0)
+    return max(int((rank[filled] - np.minimum.reduceat(rank.take(matrix.indices), begins)).max()), 0)
 
 
 def _reach(matrix: CsrMatrix, rows: IntArray) -> tuple[int, IntArray]:
@@ -218,7 +219,7 @@ def _reach(matrix: CsrMatrix, rows: IntArray) -> tuple[int, IntArray]:
     )  # in the order of elimination, the farthest row that each is connected with
     if len(filled):
         own = rank[filled]
-        last[own] = np.maximum(own, np.maximum.reduceat(rank[matrix.indices], matrix.indptr[filled]))
+        last[own] = np.maximum(own, np.maximum.reduceat(rank.take(matrix.indices), matrix.indptr[filled]))
     ends = np.maximum.accumulate(last) == np.arange(n)
     part = np.empty(n, dtype=np.intp)
     part[rows] = np.cumsum(ends) - ends
@@ -233,13 +234,18 @@ def _inverse(rows: IntArray) -> IntArray:
 
 def _band(matrix: CsrMatrix, rank: IntArray | None, half_bandwidth: int) -> FloatArray:
     """Lower band storage: entry (i, j) of the reordered matrix stands at [i − j, j]."""
-    n, column = matrix.shape[0], matrix.indices.astype(np.intp, copy=False)
-    if rank is None:
-        row = row_indices(matrix)
-    else:
-        row, column = np.repeat(rank, np.diff(matrix.indptr)), rank[column]
+    n, size = matrix.shape[0], matrix.shape[0] * (half_bandwidth + 1)
+    # Short numbers, where they do, take less time to pass through.
+    kind: npt.DTypeLike = np.int32 if size <= np.iinfo(np.int32).max else np.intp
+    rows: npt.NDArray[Any] = (np.arange(n) if rank is None else rank).astype(kind)
+    column: npt.NDArray[Any] = (
+        matrix.indices.astype(kind, copy=False) if rank is None else rows.take(matrix.indices)
+    )
+    row = np.repeat(rows, np.diff(matrix.indptr))
     lower = row >= column
     # In memory column after column, so at (i - j) + j (half_bandwidth + 1).
-    band = np.zeros(n * (half_bandwidth + 1))
-    band[(row + half_bandwidth * column)[lower]] = matrix.data[lower]
+    place = column * half_bandwidth
+    place += row
+    band = np.zeros(size)
+    band[place[lower]] = matrix.data[lower]
     return band.reshape(n, half_bandwidth + 1).T

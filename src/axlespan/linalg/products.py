@@ -28,15 +28,16 @@ def half_of(matrix: sp.csr_array | None, n: int) -> Parts:
     """The diagonal of a symmetric matrix, and row starts, columns and entries of what stands above it."""
     if matrix is None:
         return np.zeros(n), *whole_of(None, n)
-    rows = np.repeat(np.arange(n, dtype=matrix.indices.dtype), np.diff(matrix.indptr))
-    above = np.flatnonzero(matrix.indices > rows)
-    ends = np.searchsorted(above, matrix.indptr)
-    return (
-        matrix.diagonal(),
-        ends.astype(np.uint32),
-        matrix.indices[above].astype(np.uint32),
-        matrix.data[above],
-    )
+    columns, entries = matrix.indices, matrix.data
+    rows = np.repeat(np.arange(n, dtype=columns.dtype), np.diff(matrix.indptr))
+    on, above = np.flatnonzero(columns == rows), columns > rows
+    if matrix.has_canonical_format and len(on) == n:  # what stands above the diagonal follows it
+        diagonal, counts = entries[on], matrix.indptr[1:] - on - 1
+    else:
+        diagonal, counts = matrix.diagonal(), np.bincount(rows[above], minlength=n)
+    ends = np.zeros(n + 1, dtype=np.uint32)
+    np.cumsum(counts, out=ends[1:])
+    return diagonal, ends, columns[above].astype(np.uint32), entries[above]
 
 
 @cache

@@ -131,7 +131,11 @@ class System:
 
     def translation(self, component: str) -> FloatArray:
         """Rigid translation (n,) by 1 along a component, of all independent d.o.f."""
-        return np.array([self.components[i] == component for i in self.independent], dtype=float)
+        return np.asarray(self._components_of_independent == component, dtype=np.float64)
+
+    @cached_property
+    def _components_of_independent(self) -> npt.NDArray[np.str_]:
+        return np.array(self.components, dtype=np.str_)[self.independent]
 
     def total_mass(self, component: str = "z") -> float:
         """Mass [kg] that moves with a rigid translation along a component."""
