@@ -128,27 +128,38 @@ class FusedMarch:
         owner = convoy.joint.vehicle_of
         touched = np.zeros(int(owner.max(initial=-1)) + 1, dtype=bool)
         touched[owner[stretch.into]] = True
-        result = []
+        systems = []
         for chunk, alike in zip(self._chunks, self._alike, strict=True):
-            own, wheel_ends, at = [np.empty(0, np.int64)], [0], [np.empty(0, np.int64)]
-            vehicles = []
-            for lane in range(chunk.lane, chunk.lane + chunk.used):
-                contacts = convoy.coupled[lane]
-                here = np.flatnonzero(touched[owner[contacts]])
-                own.append(contacts.start + here)
-                vehicles.append(self._vehicles_of(lane, here))
-                into = stretch.into[(stretch.into >= contacts.start) & (stretch.into < contacts.stop)]
-                at.append(np.searchsorted(own[-1], into))
-                wheel_ends.append(wheel_ends[-1] + len(into))
-            ends = np.cumsum([0, *map(len, own[1:])]).astype(np.int64)
-            contacts = np.concatenate(own) if alike is None else alike.places(np.concatenate(own))
-            rows = (contacts, ends, np.array(wheel_ends, dtype=np.int64), np.concatenate(at))
-            begins = np.cumsum([0, *(S.size for S, _ in vehicles)])[:-1].astype(np.int64)
-            compliance = np.concatenate([S.ravel() for S, _ in vehicles])
-            result.append(
-                (*rows, (compliance, begins, np.concatenate([reach for _, reach in vehicles])), path)
-            )
-        return result
+            lanes = range(chunk.lane, chunk.lane + chunk.used)
+            own, wheel_ends, at, vehicles = self._contacts_of(lanes, touched, stretch.into)
+            systems.append((own if alike is None else alike.places(own), *wheel_ends, at, vehicles, path))
+        return systems
+
+    def _contacts_of(
+        self, lanes: range, touched: npt.NDArray[np.bool_], into: IntArray
+    ) -> tuple[IntArray, tuple[IntArray, IntArray], IntArray, tuple[FloatArray, IntArray, IntArray]]:
+        """Contacts of the systems of some lanes; where those and wheels of each lane end; wheels among them; vehicles."""
+        owner = self._convoy.joint.vehicle_of
+        contacts, at, n_wheel, vehicles = [], [], [0], []
+        for lane in lanes:
+            own = self._convoy.coupled[lane]
+            here = np.flatnonzero(touched[owner[own]])
+            wheels = into[(into >= own.start) & (into < own.stop)]
+            contacts.append(own.start + here)
+            at.append(np.searchsorted(contacts[-1], wheels))
+            n_wheel.append(len(wheels))
+            vehicles.append(self._vehicles_of(lane, here))
+        ends = np.cumsum([0, *map(len, contacts)]).astype(np.int64)
+        begins = np.cumsum([0, *(S.size for S, _ in vehicles)])[:-1].astype(np.int64)
+        compliance = np.concatenate([S.ravel() for S, _ in vehicles])
+        reach = np.concatenate([own for _, own in vehicles])
+        wheel_ends = np.cumsum(n_wheel).astype(np.int64)
+        return (
+            np.concatenate(contacts),
+            (ends, wheel_ends),
+            np.concatenate(at),
+            (compliance, begins, reach),
+        )
 
     def _vehicles_of(self, lane: int, contacts: IntArray) -> tuple[FloatArray, IntArray]:
         """Compliance of the vehicles of a lane at some of its contacts, the upper triangle, and the reach of its rows."""

@@ -110,7 +110,8 @@ class Recorder:
         self.histories = Histories(
             _forces(plan, n_kept),
             np.empty((n_kept, n_contact)),
-            {name: np.empty((n_kept, n_vehicle)) for name in _QUANTITIES},
+            # In one piece, which large pages may hold.
+            dict(zip(_QUANTITIES, np.empty((3, n_kept, n_vehicle)), strict=True)),
             {name: np.empty((n_kept, n_sensor)) for name in _QUANTITIES},
             np.empty((n_kept, len(plan.crossing.structure.system.prescribed))),
         )
