@@ -11,6 +11,7 @@ from axlespan.interaction.fused.alike import AlikeTrains
 from axlespan.interaction.fused.march import FusedMarch
 from axlespan.interaction.simulate import simulate_many
 from axlespan.irregularity import Harmonic
+from axlespan.model.damping import Modal
 from axlespan.vehicles.simple import axle_loads, rigid_body, sprung_mass
 from axlespan.vehicles.train import Train
 
@@ -71,6 +72,59 @@ def test_same_numbers(structure, tolerance, alpha, count, monkeypatch):
             assert np.abs(a - b).max(initial=0.0) <= tolerance * np.abs(b).max(initial=0.0), name
         assert one.checks["compatibility_residual"] < 1e-10
         assert one.checks["equilibrium_residual"] < 1e-7
+
+
+DAMPED = simple_span(
+    length=25.0,
+    youngs_modulus=2.87e9,
+    second_moment=2.9,
+    mass_per_length=2303.0,
+    elements=140,
+    damping=Modal(0.03, modes=11),
+)
+DAMPED_TRACK = with_track(
+    simple_span(
+        length=25.0,
+        youngs_modulus=2.87e9,
+        second_moment=2.9,
+        mass_per_length=2303.0,
+        elements=20,
+        damping=Modal(0.03),
+    ),
+    ballasted_track(),
+    approach=25.0,
+    exit=25.0,
+)
+
+
+@pytest.mark.parametrize("structure", [DAMPED, DAMPED_TRACK], ids=["span", "track"])
+@pytest.mark.parametrize(("alpha", "tolerance"), [(0.0, 1e-7), (-0.1, 1e-8)])
+@pytest.mark.parametrize("count", [1, 10])
+def test_damping_of_modes(structure, tolerance, alpha, count, monkeypatch):
+    """Beside the band, with vehicles and moving loads; a load of the structure itself acts from the start."""
+    assert structure.system.modal_damping is not None
+    cases = crossings(structure, count)
+    used = []
+    real = FusedMarch.of.__func__
+
+    def seen(convoy):
+        used.append(real(FusedMarch, convoy))
+        return used[-1]
+
+    monkeypatch.setattr(module, "FusedMarch", type("Seen", (), {"of": staticmethod(seen)}))
+    fused = run(cases, alpha)
+    assert used
+    assert all(made is not None and made._body.modal is not None for made in used)
+    monkeypatch.setattr(module, "FusedMarch", type("Never", (), {"of": staticmethod(lambda convoy: None)}))
+    for one, other in zip(fused, run(cases, alpha), strict=True):
+        for name in QUANTITIES:
+            a, b = getattr(one, name), getattr(other, name)
+            assert np.abs(a - b).max(initial=0.0) <= tolerance * np.abs(b).max(initial=0.0), name
+        assert one.checks["compatibility_residual"] < 1e-10
+        assert one.checks["equilibrium_residual"] < 1e-7
+    undamped = run(crossings(SPAN if structure is DAMPED else TRACK, 1), alpha)[0]
+    change = np.abs(undamped.sensor_displacement - fused[0].sensor_displacement).max()
+    assert change > 1e-3 * np.abs(undamped.sensor_displacement).max()  # the damping is felt
 
 
 def cars(mass):

@@ -47,6 +47,11 @@ class UpdatedFactor:
         self.name, self.n = base.name, base.n
         self.nbytes = base.nbytes + self._u.nbytes + self._w.nbytes
 
+    @property
+    def parts(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """U and W = A⁻¹ U (n, m), and (diag(1/c) + Uᵀ W)⁻¹ (m, m)."""
+        return self._u, self._w, np.asarray(cho_solve(self._inner, np.eye(self._u.shape[1])))
+
     def solve(self, b: FloatArray, out: FloatArray | None = None) -> FloatArray:
         """(A + U diag(c) Uᵀ)⁻¹ b."""
         x = self.base.solve(b, out=out)

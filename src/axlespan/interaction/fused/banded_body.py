@@ -12,6 +12,7 @@ from axlespan.compiled import numba_is_there
 from axlespan.dynamics.integrator import Integrator
 from axlespan.linalg.band_kernel import WIDEST, padded_width
 from axlespan.linalg.banded import BandedFactor
+from axlespan.linalg.low_rank import UpdatedFactor
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -19,6 +20,41 @@ Csr = tuple[npt.NDArray[np.uint32], npt.NDArray[np.uint32], FloatArray]
 
 #: Entries of small rows that compiled loops read at a time.
 PIECE = 8
+
+
+@dataclass(frozen=True, eq=False)
+class ModalDamping:
+    """Damping of modes U diag(c) Uᵀ beside a band; modes are padded to pieces by some that are zero."""
+
+    rows: IntArray  # (n_row,) in the order, where U is not zero
+    U: FloatArray  # (n_row, m)
+    coefficients: FloatArray  # c (m,)
+    core: FloatArray  # G (m, m): see the kernel
+    responses: FloatArray  # W (n, m) by d.o.f.
+
+    @classmethod
+    def of(cls, integrator: Integrator, factor: UpdatedFactor, rank: IntArray) -> ModalDamping:
+        """That of an integrator, with its factor and the place of each d.o.f. in the order."""
+        low_rank = integrator.matrices.C_low_rank
+        assert low_rank is not None
+        c = low_rank.coefficients
+        U, W, core = factor.parts
+        m = -(-U.shape[1] // PIECE) * PIECE
+        dofs = np.flatnonzero(np.any(U != 0.0, axis=1))
+        dofs = dofs[np.argsort(rank[dofs])]
+        return cls(
+            rank[dofs],
+            _padded(U[dofs], m),
+            _padded(c[c > 0.0], m),
+            _padded(_padded(core, m).T, m),
+            _padded(W, m),
+        )
+
+
+def _padded(values: FloatArray, m: int) -> FloatArray:
+    """With zeros behind the last entries (…, m)."""
+    widths = [(0, 0)] * (values.ndim - 1) + [(0, m - values.shape[-1])]
+    return np.ascontiguousarray(np.pad(values, widths))
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,11 +69,14 @@ class BandedBody:
     damped: bool
     lower: FloatArray  # (n + width, width + 1): 1 / D, and entry (i, i - d) of L at [i, d]
     ahead: int  # half-bandwidth of K and C
+    modal: ModalDamping | None = None  # that the band does not hold
 
     @classmethod
     def of(cls, integrator: Integrator) -> BandedBody | None:
         """The body, or None if it is not of narrow band or loops cannot be compiled."""
         factor, m = integrator.factor, integrator.matrices
+        updated = factor if isinstance(factor, UpdatedFactor) else None
+        factor = factor if updated is None else updated.base
         if not isinstance(factor, BandedFactor) or factor.half_bandwidth > WIDEST or not numba_is_there():
             return None
         rows, width = factor.order, padded_width(factor.half_bandwidth)
@@ -46,7 +85,9 @@ class BandedBody:
         rank[rows] = np.arange(len(rows))
         ahead = max(_half_bandwidth(matrix) for matrix in (K, C))
         damped = m.C is not None
-        return cls(width, rank, rows, csr_parts(K), csr_parts(C), damped, factor.unit_rows(width), ahead)
+        modal = None if updated is None else ModalDamping.of(integrator, updated, rank)
+        lower = factor.unit_rows(width)
+        return cls(width, rank, rows, csr_parts(K), csr_parts(C), damped, lower, ahead, modal)
 
 
 def _in_order(matrix: sp.csr_array | None, rows: IntArray) -> sp.csr_array:

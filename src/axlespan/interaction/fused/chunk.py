@@ -86,7 +86,11 @@ class Chunk:
         which = [rows.live[(rows.rank >= 0) == coupled] for rows in lanes]
         n_local = max(path.free.dofs.shape[1] for rows in lanes for path in rows.train.paths)
         shape = (stretch.n_step, sum(map(len, which)), n_local)
-        place, weights, begin = np.empty(shape, np.int64), np.zeros(shape), 0  # places of no weight are not read
+        place, weights, begin = (
+            np.empty(shape, np.int64),
+            np.zeros(shape),
+            0,
+        )  # places of no weight are not read
         for lane, (rows, wheels) in enumerate(zip(lanes, which, strict=True)):
             slots = np.arange(begin, begin + len(wheels))
             for path in rows.train.paths if len(wheels) else ():

@@ -17,7 +17,7 @@ import scipy.sparse as sp
 
 from axlespan.compiled import Loop
 from axlespan.dynamics.block_step import Blocks, BlockStepper
-from axlespan.dynamics.integrator import State
+from axlespan.dynamics.integrator import Integrator, State
 from axlespan.errors import AnalysisError
 from axlespan.interaction.bodies import PreparedStructure, StructureBody
 from axlespan.interaction.contact_system import Stretch
@@ -84,12 +84,17 @@ class FusedMarch:
         structure, fleet = convoy.structure, convoy.fleet
         if type(structure) is not StructureBody or type(convoy.prepared) is not PreparedStructure:
             return None
-        if structure.integrator.matrices.C_low_rank is not None:
-            return None
         if fleet is not None and (not isinstance(fleet.stepper, BlockStepper) or fleet.inner is not None):
             return None
         body = convoy.prepared.banded
-        return None if body is None else cls(convoy, body)
+        if body is None or (body.modal is not None and not cls._serves_modal(structure.integrator)):
+            return None
+        return cls(convoy, body)
+
+    @classmethod
+    def _serves_modal(cls, integrator: Integrator) -> bool:
+        """Whether damping of modes goes through the loop: small bodies are quicker with dense matrices."""
+        return integrator.dense is None
 
     def go(self, stretch: Stretch, first: int, stop: int, external: FloatArray | None) -> None:
         """Make steps ``first`` to ``stop`` of a stretch, and write them on the tape.
@@ -196,12 +201,23 @@ class FusedMarch:
             (self._vectors, np.empty((stretch.n_step, 0)) if external is None else external),
             self._fleet_of(chunk, stretch),
             None if alike is None else alike.arrays,
+            self._modal_of(chunk, number),
             self._systems[number],
             (near, self._watched, vehicles, forces, sums, self._sums, chunk.lane),
             first,
             stop,
         )
         return result
+
+    def _modal_of(self, chunk: Chunk, number: int) -> tuple[Any, ...] | None:
+        """Damping of modes, W on the path, and the lanes of a chunk's wheels."""
+        modal = self._body.modal
+        if modal is None:
+            return None
+        wheel_ends = self._systems[number][2]
+        lanes = np.repeat(np.arange(chunk.used), np.diff(wheel_ends))
+        W = modal.responses[self._convoy.structure.columns.held].reshape(-1)
+        return modal.rows, modal.U, modal.coefficients, modal.core, W, lanes
 
     def _fleet_of(self, chunk: Chunk, stretch: Stretch) -> tuple[Any, ...]:
         """The vehicles of some lanes, as the loop wants them."""

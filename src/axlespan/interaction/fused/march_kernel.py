@@ -26,6 +26,15 @@ from axlespan.interaction.fused.alike_kernel import (
 from axlespan.interaction.fused.contact_kernel import fill_system, pack_rows, room_for, solve_system
 from axlespan.interaction.fused.lane_vectors import plus, put, read, scaled
 from axlespan.interaction.fused.line_kernel import add_line, add_load, clear, standing
+from axlespan.interaction.fused.modal_kernel import (
+    add_modal_line,
+    damp,
+    find_modes,
+    room_for_modes,
+    subtract_modes,
+    take_modes,
+    undamp,
+)
 from axlespan.interaction.fused.structure_kernel import backward, eliminate, forward
 from axlespan.interaction.fused.vehicle_kernel import on_ground, predict_fleet, take_fleet
 
@@ -33,11 +42,12 @@ from axlespan.interaction.fused.vehicle_kernel import on_ground, predict_fleet, 
 @as_compiled
 def march(
     lanes: Any, width: Any, numbers: Any, structure: Any, chunk: Any, wheels: Any, known: Any, external: Any, fleet: Any,
-    alike: Any, systems: Any, tape: Any, first: int, stop: int
+    alike: Any, modal: Any, systems: Any, tape: Any, first: int, stop: int
 ) -> int:  # fmt: skip
     """Make steps ``first`` to ``stop`` of a stretch; the step whose contact system is not positive definite, or ``stop``.
 
-    ``alike`` are the vehicles of equal trains side by side; None: each of the fleet goes by itself.
+    ``alike`` are the vehicles of equal trains side by side; None: each of the fleet goes by itself. ``modal`` is damping
+    of modes; None: there is none.
     """
     p, late, wc, wp = numbers
     K, C, damped, lower, ahead, n = structure
@@ -59,6 +69,9 @@ def march(
         most = max(most, ends[s + 1] - ends[s])
     S, b, within = np.zeros((most, most)), np.zeros(most), np.zeros(most, np.int64)
     room = room_for(place.shape[1], place.shape[2])
+    if modal is not None:
+        rows, U = modal[0], modal[1]
+        modal_room = room_for_modes(lanes, len(rows), U.shape[1], len(into))
     one_by_one = np.arange(len(known_forces))
     # Wheels and moving forces on the line, at this step and at the one before.
     on, on_p = np.zeros(len(into), np.int64), np.zeros(len(into), np.int64)
@@ -89,9 +102,18 @@ def march(
                     for i in range(vectors.shape[1]):
                         for c in range(L):
                             extra[i * L + c] += factors[k, t] * vectors[t, i]
+        if modal is not None:
+            damp(lanes, len(width), modal, modal_room, p, late, state, x, added, reach, k > first, extra)
+            acting = (
+                (min(acting[0], rows[0]), max(acting[1], rows[-1] + 1))
+                if acting[1]
+                else (rows[0], rows[-1] + 1)
+            )
         forward(
             lanes, width, p, late, state, x, added, reach, K, C, damped, lower, extra, acting, ring, ahead, k > first, True
         )  # fmt: skip
+        if modal is not None:
+            undamp(lanes, rows, extra)
         if forced:
             if factors.shape[1] or k == 0:
                 extra[:] = 0.0
@@ -104,12 +126,19 @@ def march(
         backward(lanes, width, lower, x, n, 0)
         added[reach[0] * L + w : reach[1] * L + w] = 0.0
         reach[:] = 0
+        low, high = len(added), -1
+        if modal is not None:
+            find_modes(lanes, len(width), modal, modal_room, x)
         if at_contacts[1] > at_contacts[0]:
             if alike is None:
                 predict_fleet(fleet, p, late, wp, gaps[k], gap)
             else:
                 predict_alike(lanes, alike, p, late, wp, gaps[k])
             add_line(now, place[k], weights[k], into, late, state, x, w, gap)
+            if modal is not None:
+                add_modal_line(
+                    lanes, now, place[k], weights[k], into, path[0], modal, modal_room, late[3], gap
+                )
             if alike is None:
                 on_ground(fleet, gap)
             else:
@@ -133,14 +162,19 @@ def march(
                 for i in range(len(own)):
                     forces[own[i]] = b[i]
             low, high = add_load(now, place[k], weights[k], into, forces, -wc, w, added)
-            if high >= low:
-                low, high = low // L - len(width), high // L - len(width) + 1
-                end = eliminate(lanes, width, lower, added, low, high)
-                reach[0], reach[1] = backward(lanes, width, lower, added, end, low), end
+            if modal is not None:
+                take_modes(lanes, now, into, forces, wc, modal, modal_room)
             if alike is None:
                 take_fleet(fleet, late, tape, k)
             else:
                 take_alike(lanes, alike, late, fleet[12], tape, k)
+        if modal is not None:
+            subtract_modes(lanes, rows, U, modal_room[2], len(width), added)
+            low, high = min(low, rows[0] * L + w), max(high, rows[-1] * L + w)
+        if high >= low:
+            low, high = low // L - len(width), high // L - len(width) + 1
+            end = eliminate(lanes, width, lower, added, low, high)
+            reach[0], reach[1] = backward(lanes, width, lower, added, end, low), end
         on, on_p, n_on_p = on_p, on, n_on
         here, here_p, n_here_p = here_p, here, n_here
     forward(
