@@ -10,7 +10,8 @@ import numpy as np
 import axlespan as asp
 from axlespan.dynamics.integrator import Integrator
 from axlespan.interaction.contact_system import rows_of
-from axlespan.interaction.plan import matrices_of, plan_for
+from axlespan.interaction.fleet import matrices_of
+from axlespan.interaction.plan import plan_for
 from axlespan.interaction.settings import settings_for
 from axlespan.interaction.simulate import reduce_structure
 from axlespan.model.compile import compile_model

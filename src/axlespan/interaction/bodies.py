@@ -17,10 +17,10 @@ import scipy.sparse as sp
 from axlespan.dynamics.alpha import Alpha
 from axlespan.dynamics.block_step import Blocks, BlockStepper
 from axlespan.dynamics.integrator import Integrator, Matrices, State, Stepper
+from axlespan.interaction.fleet import Fleet
 from axlespan.interaction.fused.banded_body import BandedBody
 from axlespan.interaction.path_columns import PathColumns
 from axlespan.interaction.path_kernel import load_sums, subtract_at
-from axlespan.interaction.plan import Fleet
 from axlespan.linalg.products import Product
 
 FloatArray = npt.NDArray[np.float64]

@@ -15,7 +15,8 @@ from axlespan.dynamics.integrator import State
 from axlespan.errors import AnalysisError
 from axlespan.interaction.bodies import FleetBody, PreparedStructure, StructureBody
 from axlespan.interaction.contact_system import Stretch, stretch_of
-from axlespan.interaction.plan import Fleet, Plan, joined
+from axlespan.interaction.fleet import Fleet, joined
+from axlespan.interaction.plan import Plan
 from axlespan.interaction.records.recorder import Recorder
 from axlespan.interaction.records.sums import Sums
 from axlespan.interaction.records.tape import LaneTape, Tape, Watched

@@ -10,7 +10,8 @@ import numpy.typing as npt
 import scipy.sparse as sp
 
 from axlespan.dynamics.integrator import Matrices
-from axlespan.interaction.plan import Fleet, Plan
+from axlespan.interaction.fleet import Fleet
+from axlespan.interaction.plan import Plan
 from axlespan.linalg.factor import Factor, factorize
 from axlespan.linalg.parts import factor_for_loads_on
 

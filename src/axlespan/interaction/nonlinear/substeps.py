@@ -13,7 +13,7 @@ from axlespan.interaction.groundwork import prepare
 from axlespan.interaction.nonlinear.contact import NonlinearCoupling
 from axlespan.interaction.nonlinear.flights import HeldFlights
 from axlespan.interaction.plan import Plan
-from axlespan.interaction.records.monitors import EnergyMonitor
+from axlespan.interaction.records.energy import EnergyMonitor
 from axlespan.interaction.records.recorder import Recorder
 from axlespan.interaction.records.substeps import Substep
 

@@ -14,17 +14,14 @@ import scipy.sparse as sp
 from axlespan.dynamics.integrator import State
 from axlespan.errors import AnalysisError, Outcome
 from axlespan.interaction.plan import Plan
+from axlespan.interaction.records.balance import BalanceMonitor
+from axlespan.interaction.records.energy import EnergyMonitor
 from axlespan.interaction.records.envelopes import EnvelopeMonitor
 from axlespan.interaction.records.fields import FieldWatcher
 from axlespan.interaction.records.force_noise import NoiseMonitor
 from axlespan.interaction.records.gathering import Gathering
 from axlespan.interaction.records.line_histories import LineHistories
-from axlespan.interaction.records.monitors import (
-    BalanceMonitor,
-    CompatibilityMonitor,
-    EnergyMonitor,
-    TensionMonitor,
-)
+from axlespan.interaction.records.monitors import CompatibilityMonitor, TensionMonitor
 from axlespan.interaction.records.reactions import Reactions
 from axlespan.interaction.records.section_forces import SectionHistories
 from axlespan.interaction.records.stress_histories import StressHistories
