@@ -141,6 +141,8 @@ SUCH_AS_LENGTH = "Write a number and its unit, such as 25 m"
         (-math.inf, "LENGTH", "-inf: must be a finite number"),
         ("1e400 m", "LENGTH", "'1e400 m': must be a finite number"),
         ("1e308 km", "LENGTH", "'1e308 km': must be a finite number"),
+        ("1e300 m", "LENGTH", "'1e300 m': is too large to compute with. Look at its exponent"),
+        (-1e-300, "LENGTH", "-1e-300: is too small to compute with. Look at its exponent"),
     ],
 )  # fmt: skip
 def test_messages(text, kind, expected):

@@ -71,6 +71,19 @@ def test_a_risky_choice_is_a_warning_with_the_remedy(axlespan, case):
     assert "warning" not in answer.out
 
 
+@pytest.mark.parametrize(
+    ("spans", "total"), [("[1 m, 2 m]", "3 m"), ("[20 m, 20 m]", "40 m"), ("24 m", None)]
+)
+def test_spans_to_assess_that_are_not_those_of_the_deck(axlespan, case, spans, total):
+    path = case(("output:", f"assessment: {{spans: {spans}}}\noutput:"))
+    answer = axlespan("check", path)
+    said = (
+        f"axlespan: warning: {path}:18:21: assessment.spans = {spans}: add up to {total}, and the deck is 25 m long. "
+        "Leave them out where the structure knows its spans\n"
+    )
+    assert (answer.code, answer.err) == (0, said if total else "")
+
+
 def test_unusual_values_are_warnings_with_their_place(axlespan, case):
     path = case(("elements: 20", "elements: 20\n  damping: {kind: modal, ratio: 45 %}"))
     answer = axlespan("check", path)

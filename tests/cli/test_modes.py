@@ -99,8 +99,9 @@ def test_what_is_written(case, tmp_path):
 @pytest.mark.parametrize(
     ("words", "edits", "said"),
     [
-        (("-n", "100"), (), "count = 100: must be at most 24, the number of modes that there are"),
+        (("-n", "100"), (), "--number = 100: must be at most 24, the number of modes that there are"),
         ((), (("20 m,", "20 kg,"),), "structure.length = 20 kg: must be a length"),
+        ((), (("title: Footbridge", "vary: {crossing.speed: [20 m/s]}"),), "is a study, not a case"),
     ],
 )
 def test_refusals(case, words, edits, said):

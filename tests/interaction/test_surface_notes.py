@@ -7,10 +7,12 @@ import pytest
 
 import axlespan as asp
 from axlespan import irregularity as ir
+from axlespan.bridges import SupportAt
 from axlespan.errors import InputError
 from axlespan.interaction.plan import plan_for
 from axlespan.interaction.settings import settings_for
 from axlespan.interaction.surface_notes import start_notes
+from axlespan.model.motions import Constant, HarmonicMotion, TableMotion
 
 BEAM = {"length": 12.0, "youngs_modulus": 34e9, "second_moment": 0.5, "mass_per_length": 9e3, "elements": 12}
 CAR = asp.vehicles.sprung_mass(mass=5e3, stiffness=1e6, damping=1e4)
@@ -120,3 +122,22 @@ def test_trains_that_are_set_off_on_the_track_at_the_bridge(track, motion, told)
 
 def test_bare_spans_may_start_at_zero(beam):
     assert start_notes(asp.Crossing(beam, asp.Train.of(CAR), speed=20.0)) == []
+
+
+@pytest.mark.parametrize(
+    ("motion", "told"),
+    [
+        (HarmonicMotion(1e-3, 2.0), "'support2.z' moves at 0.0126 m/s or rad/s at t = 0"),
+        (TableMotion([0.0, 1.0], [0.0, 2e-3]), "'support2.z' moves at 0.002 m/s"),
+        (HarmonicMotion(1e-3, 2.0, np.pi / 2), None),
+        (TableMotion([0.0, 1.0], [0.0, 2e-3], smooth=True), None),
+        (TableMotion([0.5, 1.0], [0.0, 2e-3]), None),
+        (Constant(-5e-3), None),
+    ],
+)
+def test_supports_that_start_with_a_jerk(motion, told):
+    supports = [SupportAt(0.0), SupportAt(12.0, fixed=(), motion={"z": motion})]
+    crossing = asp.Crossing(asp.bridges.simple_span(**BEAM, supports=supports), asp.Train.of(CAR), speed=20.0)
+    notes = start_notes(crossing)
+    assert len(notes) == (told is not None)
+    assert told is None or told in notes[0]

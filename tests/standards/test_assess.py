@@ -154,6 +154,13 @@ def test_dynamic_effect_by_hand(found, result, crossing):
     assert found["lm71_deflection"].value == pytest.approx(phi2(SPAN) * model, rel=2e-3)
 
 
+@pytest.mark.parametrize(("points", "error"), [(12, 2e-3), (30, 1e-4)])
+def test_dynamic_effect_where_nothing_is_recorded_in_the_middle(found, crossing, points, error):
+    coarse = asp.simulate(crossing, time_step=2e-3, steps=2600, line_points=points)
+    verdict = next(v for v in assess(coarse, crossing, LINE) if v.check == "dynamic_effect")
+    assert verdict.value == pytest.approx(found["dynamic_effect"].value, rel=error)
+
+
 def test_damping_above_the_lower_bound_fails(result, crossing):
     steel = dataclasses.replace(LINE, bridge_type="steel", checks=("damping",))
     (verdict,) = assess(result, crossing, steel)

@@ -30,7 +30,8 @@ def with_spring_law(
     """The same structure, with the springs of a group on a law.
 
     The law takes the place of their stiffness, and dashpots stay; that of a dashpot takes the place of their damping,
-    and springs stay; a one-sided spring takes the place of both. What it replaces stays in the matrices as a reference:
+    and springs stay; a one-sided spring takes the place of both, and of the Rayleigh damping of the spring, which
+    would pull where it has parted. What it replaces stays in the matrices as a reference:
     modes and Rayleigh damping know that, and a spring that follows it is no unknown of a step. A run rests under its
     own weight first, and displacements count from there.
 
@@ -44,7 +45,8 @@ def with_spring_law(
     group : str
         Name of a group of springs between a lower and an upper node: ``"pads"``, ``"ballast"``, ``"support left"``.
     law : SpringLaw, or callable
-        See :mod:`axlespan.model.nonlinear`; or what makes one of stiffness and damping (n_spring,) of the springs.
+        See :mod:`axlespan.model.nonlinear`; or what makes one of stiffness and damping (n_spring,) of the springs,
+        Rayleigh damping included.
     component : str
         Direction in which they act.
     gap : float
@@ -72,7 +74,7 @@ def with_spring_law(
     rows = []
     for found in springs_of(structure, group, component):
         gaps = np.full(len(found.stiffness), float(gap))
-        own = law(found.stiffness, found.damping) if callable(law) else law
+        own = law(found.stiffness, found.drag) if callable(law) else law
         is_dashpot, is_both = not np.any(own.stiffness), isinstance(own, UnilateralSpring)
         usual = found.damping if is_dashpot else found.stiffness
         if not np.all(usual > 0.0):
@@ -84,7 +86,7 @@ def with_spring_law(
         if not callable(law):
             own = ScaledLaw(law, shares(usual))
         k = np.zeros_like(gaps) if is_dashpot else found.stiffness
-        c = found.damping if is_dashpot or is_both else np.zeros_like(gaps)
+        c = found.drag if is_both else found.damping if is_dashpot else np.zeros_like(gaps)
         rows.append(SpringRows(name, own, found.rows, gaps, k, c))
     system = replace(structure.system, nonlinear=(*structure.system.nonlinear, *rows))
     return replace(structure, system=system)
@@ -110,6 +112,7 @@ class FoundSprings:
     rows: sp.csr_array  # (n_spring, n) elongations: the upper node less the lower one
     stiffness: FloatArray  # (n_spring,) [N/m]
     damping: FloatArray  # (n_spring,) [N s/m]
+    drag: FloatArray  # (n_spring,) of the dashpot and of Rayleigh damping, which ends where a spring parts [N s/m]
     places: FloatArray  # (n_spring,) of the second nodes along x [m]
 
 
@@ -139,10 +142,11 @@ def springs_of(
         turned = model.points[part.nodes[:, 0], 2] > model.points[part.nodes[:, 1], 2]
         dofs[turned] = dofs[turned, ::-1]
         k, c = part.stiffness[:, at], part.damping[:, at]
+        drag = c + model.damping_of(part).beta * k
         own = np.flatnonzero((k > 0.0) | (c > 0.0) if dashpots else k > 0.0)
         n = len(own)
         unit = sp.coo_array(
             (np.tile([-1.0, 1.0], n), (np.repeat(np.arange(n), 2), dofs[own].ravel())), (n, table.size)
         )
         rows = sp.csr_array(sp.csr_array(unit) @ elimination)
-        yield FoundSprings(rows, k[own], c[own], model.points[part.nodes[own, 1], 0])
+        yield FoundSprings(rows, k[own], c[own], drag[own], model.points[part.nodes[own, 1], 0])

@@ -26,7 +26,8 @@ def with_unilateral_springs(
 ) -> Structure:
     """The same structure, with the springs and dashpots of a group that can push only.
 
-    They push with the stiffness and damping that they have, the matrices stay; where they part, a run takes that off.
+    They push with the stiffness and damping that they have, Rayleigh damping included, and the matrices stay; where
+    they part, a run takes all of that off.
     Under its own weight the structure rests on those that it presses, and displacements count from there.
 
     Parameters
@@ -50,7 +51,7 @@ def with_unilateral_springs(
         raise InputError("follow a law already", field="group", value=group)
     rows: list[SpringRows] = []
     for found in springs_of(structure, group, component, dashpots=False):
-        law = UnilateralSpring(found.stiffness, found.damping)
+        law = UnilateralSpring(found.stiffness, found.drag)
         gaps = _gaps(found.places, hanging)
         rows.append(SpringRows(group, law, found.rows, gaps, law.stiffness, law.damping))
     system = replace(structure.system, nonlinear=(*structure.system.nonlinear, *rows))

@@ -9,7 +9,7 @@ import numpy as np
 
 from axlespan.cli.folder import check_folder, publish, staged
 from axlespan.cli.messages import DONE, FAILED, refuse, say, warn
-from axlespan.errors import AnalysisError, InputError
+from axlespan.errors import AnalysisError, InputError, Place
 from axlespan.io.paraview import write_modes
 from axlespan.io.strict_json import to_json
 from axlespan.irregularity import spectrum_names
@@ -18,6 +18,7 @@ from axlespan.model.modal import SystemModes, modes_of
 from axlespan.running.structure import Structure
 from axlespan.study.build import build
 from axlespan.study.loader import load_case
+from axlespan.study.sweep.spec import is_study_file
 
 #: Version of the layout of modes.json.
 FORMAT_VERSION = 1
@@ -29,12 +30,16 @@ _PICTURES = 10
 def show_modes(case: Path, number: int | None, output: Path | None, *, force: bool) -> int:
     """Compute the modes of a case's structure, print and write them; the exit code."""
     try:
+        if is_study_file(case):
+            raise InputError(
+                "is a study, not a case", place=Place(str(case)), fix="Name its base, or a case of its own"
+            )
         loaded = load_case(case, spectra=spectrum_names())
         if output is not None:
             check_folder(output, force)
         built = build(loaded)
         structure = built.crossing.structure
-        found = modes_of(structure.system, number)
+        found = _found(structure, number)
     except InputError as error:
         return refuse(error)
     except (AnalysisError, NotPositiveDefinite) as error:
@@ -56,6 +61,16 @@ def show_modes(case: Path, number: int | None, output: Path | None, *, force: bo
     if output is not None:
         say(f"Written to {output}: {', '.join(written)}")
     return DONE
+
+
+def _found(structure: Structure, number: int | None) -> SystemModes:
+    """The modes; that there are not so many is said of the option."""
+    try:
+        return modes_of(structure.system, number)
+    except InputError as error:
+        if error.field != "count":
+            raise
+        raise InputError(error.rule, field="--number", value=number, fix=error.fix) from None
 
 
 def modes_table(structure: Structure, found: SystemModes, title: str) -> list[str]:

@@ -14,6 +14,8 @@ from axlespan.running.structure import DECK_LINE, RAIL_LINE
 _STEP, _HIGHEST = 2e-5, 0.2
 # Distance to either side of a place, over which a step is told from a slope [m].
 _BESIDE = 1e-7
+# Velocity of a support that sets off with a jerk [m/s or rad/s].
+_JERK = 1e-6
 # Places at which a profile is looked at.
 _PLACES = 2001
 # Way on a track after which the deck's acceleration is off by less than 1 % [m]; 3 % after half of it, 34 % without.
@@ -37,6 +39,26 @@ def surface_notes(crossing: Crossing, end: float) -> list[str]:
 
 
 def start_notes(crossing: Crossing) -> list[str]:
+    """Warnings of supports that start with a jerk, and of wheels that are set off on a track at the bridge."""
+    return [*_jerks(crossing), *_set_off(crossing)]
+
+
+def _jerks(crossing: Crossing) -> list[str]:
+    """A warning if a support has a velocity at time zero, when the structure has none."""
+    system, start = crossing.structure.system, np.zeros(1)
+    speeds = np.array([float(motion.velocity(start)[0]) for motion in system.motions])
+    moving = np.flatnonzero(np.abs(speeds) > _JERK)
+    if not len(moving):
+        return []
+    first = int(moving[0])
+    return [
+        f"warning: the support '{system.support_names[first]}' moves at {speeds[first]:.3g} m/s or rad/s at t = 0, when the "
+        "structure is at rest: a blow that reactions and accelerations show at first; let it begin at rest, "
+        "by a smooth table or with a phase of 90 deg"
+    ]
+
+
+def _set_off(crossing: Crossing) -> list[str]:
     """A warning if wheels are set off on a track at the bridge, where the rails have no velocity yet."""
     lines = crossing.structure.lines
     if RAIL_LINE not in lines or DECK_LINE not in lines:

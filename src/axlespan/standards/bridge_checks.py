@@ -100,7 +100,7 @@ def dynamic_effect(given: Given, effects: Sequence[SpanEffects]) -> list[Verdict
     second, share_words = added_share(given)
     best: tuple[float, SpanEffects, float, int] | None = None
     for effect in effects:
-        history = -_at(moved, at, effect.middle)
+        history = -_at_middle(moved, at, effect)
         row = int(np.argmax(history))
         first = float(history[row]) / effect.train - 1.0
         ratio = (1.0 + first + second) * effect.train / (factor * effect.lm71)
@@ -180,8 +180,18 @@ def not_possible(given: Given) -> str:
     return ""
 
 
-def _at(table: FloatArray, positions: FloatArray, place: float) -> FloatArray:
-    """A history at a place between recorded points, by linear interpolation."""
-    i = int(np.clip(np.searchsorted(positions, place) - 1, 0, len(positions) - 2))
-    share = float(np.clip((place - positions[i]) / (positions[i + 1] - positions[i]), 0.0, 1.0))
-    return np.asarray((1.0 - share) * table[:, i] + share * table[:, i + 1])
+def _at_middle(table: FloatArray, positions: FloatArray, effect: SpanEffects) -> FloatArray:
+    """History in the middle of a span, by the polynomial through the nearest four recorded points of the span.
+
+    A straight line between two points would cut the crest of the deflection off.
+    """
+    reach = 0.5 * effect.span * (1.0 + 1e-9)
+    beside = np.abs(positions - effect.middle)
+    near = np.argsort(beside, kind="stable")[:4]
+    near = near[beside[near] <= reach]
+    x = positions[near] - effect.middle
+    if not len(near) or x.min() > 0.0 or x.max() < 0.0:  # the span is recorded in one half at most
+        return np.array([np.interp(effect.middle, positions, row) for row in table])
+    others = np.where(np.eye(len(x), dtype=bool), 1.0, -x)
+    apart = np.where(np.eye(len(x), dtype=bool), 1.0, x[:, None] - x)
+    return np.asarray(table[:, near] @ (others / apart).prod(axis=1))

@@ -13,7 +13,7 @@ from axlespan.interaction.plan import Plan, plan_for
 from axlespan.interaction.settings import Iteration, settings_for
 from axlespan.running.structure import MAIN_LINE, Structure
 from axlespan.study import case_crossing
-from axlespan.study.build_checks import overlaps, require_solver, require_stable
+from axlespan.study.build_checks import other_spans, overlaps, require_modes, require_solver, require_stable
 from axlespan.study.build_irregularity import irregularity_of
 from axlespan.study.build_structures import structure_of
 from axlespan.study.build_vehicles import train_of
@@ -94,6 +94,7 @@ def build(
         crossing = _crossing(loaded, made.structure, trains, surfaces)
     with pointing(loaded, "analysis"):
         require_solver(case.analysis.solver)
+        require_modes(made.structure, case.analysis.modes)
         method = _method(loaded)
         options = _options(case.analysis, case.output, made)
         if lasting is not None:
@@ -101,6 +102,7 @@ def build(
         settings = settings_for(crossing, method=method, **options)
         plan = plan_for(crossing, settings, known.like)
     warnings = (*loaded.warnings, *(f"{loaded.source.file}: structure: {word}" for word in made.warnings))
+    warnings = (*warnings, *other_spans(made.structure, case, loaded.source))
     of_trains = known.of_trains
     if known.trains is None:
         of_trains = (*overlaps(trains[0], loaded.source), *stated_otherwise(loaded))

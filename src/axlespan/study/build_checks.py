@@ -7,9 +7,11 @@ from collections.abc import Iterator
 import numpy as np
 
 from axlespan.errors import InputError
+from axlespan.interaction.line_points import deck_line
 from axlespan.linalg.factor import NotPositiveDefinite, available
 from axlespan.running.structure import Structure
 from axlespan.study import case_structure
+from axlespan.study.case import Case
 from axlespan.study.source import Source
 from axlespan.units import LENGTH, show
 from axlespan.vehicles import Train
@@ -19,6 +21,9 @@ from axlespan.vehicles import Train
 _MANY = 5000
 
 _SHOWN = 4
+
+# Share of the deck's length that spans cover at least: the rest are overhangs.
+_SPANNED = 0.8
 
 _PACKAGES = {"pardiso": "pip install mkl", "cholmod": "pip install cvxopt"}
 
@@ -84,6 +89,32 @@ def require_solver(kind: str) -> None:
             value=kind,
             fix=f"Write {', '.join(('auto', *available()))}, or {_PACKAGES.get(kind, 'install it')}",
         )
+
+
+def require_modes(structure: Structure, modes: int | None) -> None:
+    """Require that a structure has as many modes as a reduced basis is to hold.
+
+    Raises
+    ------
+    InputError
+    """
+    system = structure.system
+    there = int(np.count_nonzero(system.mass.diagonal()[system.free]))
+    if modes is not None and modes > there:
+        rule = f"must be at most {there}, the number of d.o.f. with mass"
+        raise InputError(rule, field="modes", value=modes, fix="Leave it out; Ritz vectors alone will do")
+
+
+def other_spans(structure: Structure, case: Case, source: Source) -> Iterator[str]:
+    """Warn of spans to assess that end far before the deck does, or behind it."""
+    if case.assessment is None or case.assessment.spans is None:
+        return
+    path = deck_line(structure)
+    length, total = path.stop - path.start, sum(case.assessment.spans)
+    if _SPANNED * length <= total <= (1.0 + 1e-6) * length:
+        return
+    rule = f"add up to {show(total, LENGTH, 4)}, and the deck is {show(length, LENGTH, 4)} long"
+    yield str(source.blame("assessment.spans", rule, "Leave them out where the structure knows its spans"))
 
 
 def overlaps(train: Train, source: Source) -> Iterator[str]:

@@ -77,8 +77,13 @@ def _fast(case: Case, source: Source) -> Iterator[InputError]:
     others = ((f"other_trains.{n}.speed", other.speed) for n, other in enumerate(case.other_trains))
     for path, speed in (("crossing.speed", case.crossing.speed), *others):
         if speed is not None and speed > FASTEST_LINE and not _has_unit(source, path):
-            rule = f"is taken as {speed:g} m/s, which is {units.show(speed, units.SPEED)}"
-            yield source.blame(path, rule, f"Write {speed:g} km/h if that is meant")
+            yield source.blame(path, *fast(speed))
+
+
+def fast(speed: float) -> tuple[str, str]:
+    """Return what is said of a speed without unit [m/s] that no line allows, and what to do."""
+    rule = f"is taken as {speed:g} m/s, which is {units.show(speed, units.SPEED)}"
+    return rule, f"Write {speed:g} km/h if that is meant"
 
 
 def _sagging(case: Case, source: Source) -> Iterator[tuple[InputError, bool]]:

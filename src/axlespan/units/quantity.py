@@ -13,6 +13,7 @@ from axlespan.units.dimensions import FORCE, FREQUENCY, MASS, NUMBER, RATIO, Dim
 from axlespan.units.symbols import Exponents, UnknownUnit, corrected, multiply_out
 
 _LONGEST: Final = 80
+_SMALLEST, _LARGEST = 1e-30, 1e30  # SI; far beyond whatever is measured, far within what floats can multiply
 _WEIGHT: Final = 9.81  # m/s^2, for messages that turn masses into weights
 _SUPERSCRIPTS: Final = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
 _PLAIN: Final = str.maketrans(
@@ -50,7 +51,7 @@ def parse(text: Any, dimension: Dimension) -> float:
     Raises
     ------
     InputError
-        If it is no number, not finite, has an unknown unit or is of another kind.
+        If it is no number, not finite, beyond 1e-30 to 1e30 in size, has an unknown unit or is of another kind.
 
     Examples
     --------
@@ -65,7 +66,7 @@ def parse(text: Any, dimension: Dimension) -> float:
         raise InputError(f"must be {dimension.name}", value=text, fix=_example(dimension))
     if not isinstance(text, str):
         try:
-            return _finite(float(text), text)
+            return _sound(_finite(float(text), text), text)
         except OverflowError:
             return _finite(math.inf, text)
     reading = read(text, dimension)
@@ -75,7 +76,7 @@ def parse(text: Any, dimension: Dimension) -> float:
             value=text,
             fix=_other_kind(reading, dimension),
         )
-    return reading.value
+    return _sound(reading.value, text)
 
 
 def read(text: str, dimension: Dimension | None = None) -> Reading:
@@ -149,6 +150,14 @@ def _product(number: str, scale: Fraction) -> float:
 def _finite(value: float, written: object) -> float:
     if not math.isfinite(value):
         raise InputError("must be a finite number", value=written)
+    return value
+
+
+def _sound(value: float, written: object) -> float:
+    """Refuse sizes whose powers and products would overflow, or vanish, in what is computed from them."""
+    if value != 0.0 and not _SMALLEST <= abs(value) <= _LARGEST:
+        size = "large" if abs(value) > 1.0 else "small"
+        raise InputError(f"is too {size} to compute with", value=written, fix="Look at its exponent")
     return value
 
 

@@ -167,6 +167,10 @@ def test_traffic_mixes_trains_by_their_shares(study_file):
         ),
         ("vary: {crossing.speed: {form: 1}}", "does not say how the value varies"),
         (
+            "vary: {crossing.speed: {seeds: 10}}",
+            "8:24: vary.crossing.speed = {seeds: 10}: are seeds, for paths such as crossing.irregularity.seed",
+        ),
+        (
             "vary: {crossing.speed: {distribution: normal, mean: 30 m/s, std: 1 m/s}}",
             "is random, and sampling is missing. Add sampling: {method: latin-hypercube",
         ),
@@ -176,7 +180,11 @@ def test_traffic_mixes_trains_by_their_shares(study_file):
         ),
         (
             "vary: {crossing.speed: {distribution: normal, mean: 1 m/s, std: 9 m/s}}\nsampling: {method: random, count: 99}",
-            "must not be negative",
+            "must not be negative. Cut it off with from and to",
+        ),
+        (
+            "vary: {crossing.speed: {factor: [1, -1.1]}}",
+            "8:37: vary.crossing.speed = -110.0 km/h: must not be negative. Take other factors",
         ),
         (
             "vary: {crossing.speed: {distribution: uniform, from: 3, to: 2}}\nsampling: {method: random, count: 3}",
@@ -228,6 +236,25 @@ def test_what_is_wrong_is_named_with_its_place(study_file, rest, says):
         load(study_file, rest)
     assert says in str(caught.value)
     assert str(caught.value).startswith(str(study_file(HEAD + rest))) or "study.yaml:" in str(caught.value)
+
+
+def test_speeds_that_were_meant_in_kilometers_per_hour_are_a_warning(study_file):
+    study = load(study_file, "vary: {crossing.speed: [80, 100, 120]}")
+    (said,) = study.trial(timed=False).cautions
+    assert said.endswith(
+        "study.yaml:8:29: vary.crossing.speed.1 = 100: is taken as 100 m/s, which is 360 km/h. "
+        "Write 100 km/h if that is meant"
+    )
+    assert load(study_file, "vary: {crossing.speed: [80, 360 km/h]}").trial(timed=False).cautions == ()
+
+
+def test_a_base_that_a_run_would_refuse_is_refused(study_file):
+    """8 t/m, written as 8."""
+    base = HEAD.replace("8 t/m", "8")
+    assert base != HEAD
+    with pytest.raises(InputError, match=r"structure.mass_per_length = 8: with it the first frequency"):
+        Study.load(study_file(base + "vary: {crossing.speed: [20 m/s, 30 m/s]}"))
+    Study.load(study_file(base + "vary: {structure.mass_per_length: [14 t/m, 15 t/m]}"))
 
 
 def test_the_base_may_stand_in_a_file_of_its_own(study_file):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from decimal import Decimal
 from typing import Any, Final
 
 import numpy as np
@@ -36,6 +37,11 @@ class Values:
 
     def __len__(self) -> int:
         return len(self.values)
+
+    @property
+    def written(self) -> bool:
+        """Whether the values stand in the file as they are, and are not computed from what does."""
+        return self.listed and self.node.name != "factor"
 
     def place(self, number: int) -> tuple[str | int, ...]:
         """Where a value stands in the study file."""
@@ -88,6 +94,8 @@ def varied(path: str, node: Node, trains: Trains, given: Given) -> Values | Chan
     if "factor" in data:
         return _factors(path, node, given)
     if "seeds" in data:
+        if path.rpartition(".")[2] != "seed":
+            raise node.fault("are seeds, for paths such as crossing.irregularity.seed", f"Write {_EXAMPLE}")
         parts = node.keys(("seeds", "first"), "{seeds: 10, first: 1}")
         first = int(parts["first"].checked(SEED)) if "first" in parts else 1
         count = int(parts["seeds"].checked(Whole(at_most=MOST)))
@@ -139,14 +147,17 @@ def _factors(path: str, node: Node, given: Given) -> Values | Chance:
     def scaled(numbers: Sequence[float]) -> list[Any]:
         return [like.text(number * like.number) for number in numbers]
 
+    def exactly(numbers: Sequence[float]) -> list[Any]:  # 1.1 times 100 km/h as one writes it
+        return [like.text(Decimal(repr(number)) * like.decimal) for number in numbers]
+
     if isinstance(inner.data, Mapping) and "distribution" in inner.data:
         variable = variable_of(inner)
         alike_number(inner, variable)
         return _drawn(path, node, variable, lambda shares: scaled(variable.values(shares).tolist()))
     if is_range(inner.data):
-        return Values(path, scaled([float(one) for one in values_of_range(inner)]), node)
+        return Values(path, exactly([float(one) for one in values_of_range(inner)]), node)
     items = inner.items("factors", "{factor: [0.9, 1.1]}")
-    return Values(path, scaled([alike(item, PLAIN).number for item in items]), inner, None, True)
+    return Values(path, exactly([alike(item, PLAIN).number for item in items]), inner, None, True)
 
 
 def alike_number(node: Node, variable: Variable) -> None:

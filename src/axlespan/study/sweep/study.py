@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import prod
 from pathlib import Path
@@ -29,6 +29,7 @@ from axlespan.study.sweep.estimate import Estimate, Trial, estimate, lanes_in_me
 from axlespan.study.sweep.executors import Executor, InProcess, Lost, Processes
 from axlespan.study.sweep.node import Node
 from axlespan.study.sweep.planning import lanes_for, tasks
+from axlespan.study.sweep.plausible import doubts
 from axlespan.study.sweep.recipe import Recipe, digest
 from axlespan.study.sweep.scenarios import Scenarios
 from axlespan.study.sweep.spec import Spec, load_spec, read_spec
@@ -228,6 +229,7 @@ class Study(Shown):
         self._recipe = Recipe.of(spec)
         self._store: Store | None = None
         validate(self._recipe, self._scenarios, spec.source)
+        self._doubts = doubts(self._recipe, self._scenarios, spec.source)
         self._check_records()
 
     def _check_records(self) -> None:
@@ -295,13 +297,14 @@ class Study(Shown):
         InputError
             If one of them cannot be built, located where it can be told.
         """
-        return try_out(
+        trial = try_out(
             self._recipe,
             self._scenarios,
             lambda error, id: InputErrors(blamed(error, self._scenarios, self.spec.source, id)),
             timed=timed,
             forgiving=self.spec.sampling is not None,
         )
+        return replace(trial, cautions=(*self._doubts, *trial.cautions))
 
     def estimate(self, *, workers: int = 1, free: float = 4e9) -> Estimate:
         """What it takes on so many workers, from a trial.

@@ -47,8 +47,12 @@ def validate(recipe: Recipe, scenarios: Scenarios, source: Source) -> None:
         One line for each slip, at its place in the study or in its base.
     """
     faults: list[InputError] = []
+    told: set[tuple[Any, str]] = set()  # of values that are drawn or computed one is enough
     for number, _, _ in scenarios.one_by_one(MOST):
-        faults += check_one(recipe, scenarios, source, number)
+        for fault in check_one(recipe, scenarios, source, number):
+            if (fault.place, fault.rule) not in told:
+                faults.append(fault)
+            told.add((fault.place, fault.rule))
         if number == 0 and faults:
             break  # what is wrong with the base is wrong everywhere
         if len(faults) > 20:
@@ -113,4 +117,17 @@ def _at_value(error: InputError, part: Values, number: int, rest: str, source: S
         field = f"vary.{part.path}" + (f".{rest}" if rest else "")
     else:
         more, field = {"value": Written(value) if isinstance(value, str) else value}, f"vary.{part.path}"
-    return InputError(rule, field=field, fix=error.fix, place=source.place(path), **more)
+    fix = error.fix if part.written or not more else _remedy(part, error.fix)
+    return InputError(rule, field=field, fix=fix, place=source.place(path), **more)
+
+
+def _remedy(part: Values, fix: str | None) -> str | None:
+    """What to do about a value that does not stand in the study: it is drawn, scaled, or within a range."""
+    kind = part.node.data if isinstance(part.node.data, Mapping) else {}
+    if "distribution" in kind:
+        return (
+            "Cut it off with from and to" if kind["distribution"] == "normal" else "Take another distribution"
+        )
+    if "factor" in kind or part.node.name == "factor":
+        return "Take other factors"
+    return None if fix and fix.startswith("Write ") else fix
