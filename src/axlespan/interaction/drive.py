@@ -42,8 +42,8 @@ class Leap(Protocol):
         """The structure of one lane at the last step made."""
         ...
 
-    def show(self, stretch: Stretch, k: int, lanes: Sequence[int]) -> None:
-        """Bring the convoy's bodies to step ``k``, the last one made; of the structure, the states of some lanes."""
+    def show(self, stretch: Stretch, k: int, *, states: bool) -> None:
+        """Bring the convoy's bodies to step ``k``, the last one made, the structure's with or without its states."""
         ...
 
 
@@ -145,7 +145,7 @@ def _make(
                 [i for i, one in enumerate(watching) if one.looks_at(stretch.first + k)] if k in looks else []
             )
             if leap is not None:
-                leap.show(stretch, k, [0] if alone else [])
+                leap.show(stretch, k, states=alone)
             for i in who:
                 state = convoy.structure.full(i) if leap is None or alone else leap.state_of(i)
                 watching[i].look(stretch.first + k, *convoy.moment(i, state))

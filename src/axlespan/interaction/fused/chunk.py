@@ -61,24 +61,12 @@ class Chunk:
         return (u, v, a), self._x, self._added, extra, forced, self._ring, self._reach
 
     def prepare(self, stretch: Stretch, lanes: int) -> None:
-        """Take from a stretch the wheels and contact systems of these lanes."""
+        """Take from a stretch the wheels of these lanes."""
         low, high = self.contacts
         self.wheels = (*self._rows(stretch, True), _within(stretch.into, low, high))
         begin = int(stretch.begins[1][self.lane])
         end = int(stretch.begins[1][self.lane + self.used]) if self.lane + self.used < lanes else None
         self._forced = (*self._rows(stretch, False), _within(stretch.forced, begin, end))
-        systems = [
-            s for s in stretch.systems if len(s.contacts) and low <= s.contacts[0] < high and s.matrices.size
-        ]
-        sizes = [len(system.contacts) for system in systems]
-        begins = np.cumsum([0, *(system.matrices.size for system in systems)])[:-1]
-        parts = [system.matrices.reshape(-1) for system in systems]
-        self.systems = (
-            np.concatenate([np.empty(0, np.int64), *(system.contacts for system in systems)]),
-            np.cumsum([0, *sizes]).astype(np.int64),
-            parts[0] if len(parts) == 1 else np.concatenate([np.empty(0), *parts]),
-            np.array([max(sizes, default=0), *begins], dtype=np.int64),
-        )
 
     def _rows(self, stretch: Stretch, coupled: bool) -> tuple[IntArray, FloatArray]:
         """Places in the chunk (n_step, n_wheel, n_local) of the coupled wheels, or the moving forces, and weights."""
@@ -86,11 +74,8 @@ class Chunk:
         which = [rows.live[(rows.rank >= 0) == coupled] for rows in lanes]
         n_local = max(path.free.dofs.shape[1] for rows in lanes for path in rows.train.paths)
         shape = (stretch.n_step, sum(map(len, which)), n_local)
-        place, weights, begin = (
-            np.empty(shape, np.int64),
-            np.zeros(shape),
-            0,
-        )  # places of no weight are not read
+        place, weights = np.empty(shape, np.int64), np.zeros(shape)  # places of no weight are not read
+        begin = 0
         for lane, (rows, wheels) in enumerate(zip(lanes, which, strict=True)):
             slots = np.arange(begin, begin + len(wheels))
             for path in rows.train.paths if len(wheels) else ():
@@ -124,12 +109,11 @@ class Chunk:
         """The state of one of the lanes."""
         return State(np.ascontiguousarray(self._values[:, :, lane - self.lane][:, self._body.rank]))
 
-    def show(self, structure: StructureBody, lanes: IntArray) -> None:
-        """Give back the states of those of some lanes that are here."""
-        own = lanes[(lanes >= self.lane) & (lanes < self.lane + self.used)]
-        if len(own):
-            values = structure.state.values.reshape(3, len(self._body.rank), -1)
-            values[:, :, own] = self._values[:, self._body.rank][:, :, own - self.lane]
+    def show(self, structure: StructureBody) -> None:
+        """Give back the lanes' states."""
+        values = structure.state.values.reshape(3, len(self._body.rank), -1)
+        own = slice(self.lane, self.lane + self.used)
+        values[:, :, own] = self._values[:, self._body.rank, : self.used]
 
 
 def _aligned(size: int) -> FloatArray:

@@ -6,7 +6,6 @@ that stay in the caches, while factor and matrices are read once for all of a ch
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import cache
 from itertools import pairwise
 from typing import Any, Self
@@ -233,11 +232,11 @@ class FusedMarch:
         (chunk,) = (one for one in self._chunks if one.lane <= lane < one.lane + one.used)
         return chunk.state_of(lane)
 
-    def show(self, stretch: Stretch, k: int, lanes: Sequence[int]) -> None:
-        """Bring the bodies of the convoy to the step just made; of the structure, the states of some lanes."""
+    def show(self, stretch: Stretch, k: int, *, states: bool) -> None:
+        """Bring the bodies of the convoy to the step just made, the structure's with or without its states."""
         structure, fleet = self._convoy.structure, self._convoy.fleet
-        for chunk in self._chunks:
-            chunk.show(structure, np.asarray(lanes, dtype=np.int64))
+        for chunk in self._chunks if states else ():
+            chunk.show(structure)
         load = self._convoy.known_load(stretch, k, once=True)
         if fleet is not None:
             fleet.forces = self._fleet[0].copy()

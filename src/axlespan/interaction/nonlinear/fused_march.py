@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import cache
 from itertools import pairwise
 from typing import Any
@@ -118,7 +117,7 @@ class NonlinearMarch(FusedMarch):
                 if why == DONE:
                     return
                 if k > before:
-                    self.show(stretch, k - 1, [0])
+                    self.show(stretch, k - 1, states=True)
                 if why == COLUMN:
                     self._columns.need(np.array([spring]))
                     continue
@@ -152,7 +151,9 @@ class NonlinearMarch(FusedMarch):
         self._stretch = stretch
         convoy.tape.arrays[2][...] = convoy.joint.weight  # moving forces stay so
         chunk.prepare(stretch, 1)
-        contacts, _, matrices, _ = chunk.systems
+        systems = [system for system in stretch.systems if system.matrices.size]
+        contacts = systems[0].contacts if systems else np.empty(0, dtype=np.int64)
+        matrices = systems[0].matrices.reshape(-1) if systems else np.empty(0)
         place, weights, into = (np.ascontiguousarray(part) for part in chunk.wheels)
         at = self._columns.place[np.minimum(stretch.flat, len(self._columns.place) - 1)]
         self._rows = (place, weights, into, at, np.searchsorted(contacts, into))
@@ -228,11 +229,11 @@ class NonlinearMarch(FusedMarch):
             tape.filled = first + j  # the steps before are good, whatever is found now
             coupling.flew(stretch.first + first + j, forces[j], flown[1, j], flown[0, j])
 
-    def show(self, stretch: Stretch, k: int, lanes: Sequence[int]) -> None:
+    def show(self, stretch: Stretch, k: int, *, states: bool) -> None:
         """Bring the bodies of the convoy to the step just made, unless they made it."""
         if not self._follows:
             return
-        super().show(stretch, k, lanes)
+        super().show(stretch, k, states=states)
         structure, inner = self._convoy.structure, self._coupling.field.force()
         if inner is not None:
             structure.carry(structure.load_of(0) - inner)
