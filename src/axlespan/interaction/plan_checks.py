@@ -75,6 +75,11 @@ def check_reach(crossing: Crossing, settings: Settings, rows: TrainRows) -> None
         head = run.course.head(ends)
         way = np.concatenate([head, head - run.course.direction * run.train.wheelbase])
         if way.max() < start or way.min() > stop:
+            # Without the reach of footprints, which nobody wrote.
+            own = [
+                crossing.structure.line(name) for name in map(crossing.line_name, dict.fromkeys(run.lines))
+            ]
+            start, stop = min(line.start for line in own), max(line.stop for line in own)
             raise InputError(
                 f"never brings a wheel onto the structure, which lies between {start:g} and {stop:g} m",
                 field=f"others.{number - 1}" if number else "crossing",

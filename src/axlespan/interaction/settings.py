@@ -30,6 +30,8 @@ LOST_AFTER = 0.5
 CUTS = 4
 MOST_CUTS = 10
 
+# More than any machine has cores.
+_MOST_THREADS = 1024
 #: Environment variable with the number of threads, where a run does not name it.
 THREADS = "AXLESPAN_THREADS"
 
@@ -199,9 +201,13 @@ def _threads(given: int | None) -> int:
         number = int(raw)
     except ValueError:
         number = 0
-    if isinstance(raw, bool) or number < 1 or (isinstance(raw, float) and raw != number):
+    if (
+        isinstance(raw, bool)
+        or not 1 <= number <= _MOST_THREADS
+        or (isinstance(raw, float) and raw != number)
+    ):
         field = THREADS if given is None else "threads"
-        raise InputError("must be a whole number of at least 1", field=field, value=raw)
+        raise InputError(f"must be a whole number from 1 to {_MOST_THREADS}", field=field, value=raw)
     return number
 
 

@@ -215,6 +215,10 @@ def test_traffic_mixes_trains_by_their_shares(study_file):
             "has 1 values, and crossing.speed has 2",
         ),
         (
+            "vary: {crossing.speed: [1, 2]}\nzip: [[crossing.speed, crossing.speed]]",
+            "names a path twice",
+        ),
+        (
             "vary: {crossing.speed: [1, 2]}\nzip: [[crossing.speed, crossing.start]]",
             "is not among the lists of vary",
         ),

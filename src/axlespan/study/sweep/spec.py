@@ -249,6 +249,8 @@ def _zipped(node: Node | None, values: Sequence[Values]) -> list[Axis]:
                     "Zipped lists must be equally long",
                 )
         names = tuple(item.data for item in items)
+        if len(set(names)) < len(names):
+            raise group.fault("names a path twice")
         if len(names) < 2:
             raise group.fault("must name at least two paths")
         group_of |= dict.fromkeys(names, names)
