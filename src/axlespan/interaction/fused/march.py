@@ -16,7 +16,7 @@ import scipy.sparse as sp
 
 from axlespan.compiled import Loop
 from axlespan.dynamics.block_step import Blocks, BlockStepper
-from axlespan.dynamics.integrator import Integrator, State
+from axlespan.dynamics.integrator import State
 from axlespan.errors import AnalysisError
 from axlespan.interaction.bodies import PreparedStructure, StructureBody
 from axlespan.interaction.contact_system import Stretch
@@ -45,6 +45,8 @@ class FusedMarch:
 
     #: Whether a stretch must bring contact systems; the loop makes its own.
     needs_systems = False
+    #: Whether damping of modes goes through the loop.
+    damps_modes = True
 
     def __init__(self, convoy: Convoy, body: BandedBody) -> None:
         self._convoy = convoy
@@ -86,14 +88,9 @@ class FusedMarch:
         if fleet is not None and (not isinstance(fleet.stepper, BlockStepper) or fleet.inner is not None):
             return None
         body = convoy.prepared.banded
-        if body is None or (body.modal is not None and not cls._serves_modal(structure.integrator)):
+        if body is None or (body.modal is not None and not cls.damps_modes):
             return None
         return cls(convoy, body)
-
-    @classmethod
-    def _serves_modal(cls, integrator: Integrator) -> bool:
-        """Whether damping of modes goes through the loop: small bodies are quicker with dense matrices."""
-        return integrator.dense is None
 
     def go(self, stretch: Stretch, first: int, stop: int, external: FloatArray | None) -> None:
         """Make steps ``first`` to ``stop`` of a stretch, and write them on the tape.

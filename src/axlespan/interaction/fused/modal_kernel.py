@@ -41,6 +41,9 @@ def room_for_modes(lanes: Any, n_row: int, n_mode: int, n_wheel: int) -> Any:
 @as_compiled
 def project(lanes: Any, U: Any, values: Any, result: Any) -> None:
     """U^T (m, n_row) times values (n_row) of all lanes, one behind the other."""
+    if len(lanes) == 1:
+        _project_one(U, values, result)
+        return
     L, n_mode, one, two, three = np.uint64(len(lanes)), U.shape[1], np.uint64(1), np.uint64(2), np.uint64(3)
     none = scaled(0.0, read(lanes, values, np.uint64(0)))
     for first in range(np.uint64(0), np.uint64(n_mode), np.uint64(_TOGETHER)):
@@ -56,8 +59,26 @@ def project(lanes: Any, U: Any, values: Any, result: Any) -> None:
 
 
 @as_compiled
+def _project_one(U: Any, values: Any, result: Any) -> None:
+    """The same for one lane, a piece of the modes at a time."""
+    n_row, n_mode, flat, one = np.uint64(U.shape[0]), np.uint64(U.shape[1]), U.reshape(-1), np.uint64(1)
+    pairs = n_row - n_row % np.uint64(2)
+    for first in range(np.uint64(0), n_mode, np.uint64(PIECE)):
+        even = odd = scaled(0.0, read(_EIGHT, flat, np.uint64(0)))
+        for r in range(np.uint64(0), pairs, np.uint64(2)):  # rows that do not wait for one another
+            even = plus(even, values[r], read(_EIGHT, flat, r * n_mode + first))
+            odd = plus(odd, values[r + one], read(_EIGHT, flat, (r + one) * n_mode + first))
+        if pairs < n_row:
+            even = plus(even, values[pairs], read(_EIGHT, flat, pairs * n_mode + first))
+        put(result, first, plus(even, 1.0, odd))
+
+
+@as_compiled
 def subtract_modes(lanes: Any, rows: Any, U: Any, amounts: Any, shift: Any, load: Any) -> None:
     """Subtract U times the amounts (m) of all lanes from a load at some rows, which lie so far behind in it."""
+    if len(lanes) == 1:
+        _subtract_from_one(rows, U, amounts, shift, load)
+        return
     L = np.uint64(len(lanes))
     none = scaled(0.0, read(lanes, load, np.uint64(0)))
     for r in range(np.uint64(len(rows))):
@@ -73,7 +94,22 @@ def subtract_modes(lanes: Any, rows: Any, U: Any, amounts: Any, shift: Any, load
                 plus(t3, U[r, d], read(lanes, amounts, d * L)),
             )
         at = (np.uint64(rows[r]) + np.uint64(shift)) * L
-        put(load, at, plus(read(lanes, load, at), -1.0, plus(plus(t0, 1.0, t1), 1.0, plus(t2, 1.0, t3))))
+        put(
+            load,
+            at,
+            plus(read(lanes, load, at), -1.0, plus(plus(t0, 1.0, t1), 1.0, plus(t2, 1.0, t3))),
+        )
+
+
+@as_compiled
+def _subtract_from_one(rows: Any, U: Any, amounts: Any, shift: Any, load: Any) -> None:
+    """The same for one lane, a piece of the modes at a time."""
+    n_mode, flat = np.uint64(U.shape[1]), U.reshape(-1)
+    for r in range(np.uint64(len(rows))):
+        t = scaled(0.0, read(_EIGHT, flat, np.uint64(0)))
+        for first in range(np.uint64(0), n_mode, np.uint64(PIECE)):
+            t = plus(t, 1.0, times(read(_EIGHT, amounts, first), read(_EIGHT, flat, r * n_mode + first)))
+        load[np.uint64(rows[r]) + np.uint64(shift)] -= total(t)
 
 
 @as_compiled

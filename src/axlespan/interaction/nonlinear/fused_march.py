@@ -10,7 +10,6 @@ import numpy as np
 import numpy.typing as npt
 
 from axlespan.compiled import Loop
-from axlespan.dynamics.integrator import Integrator
 from axlespan.interaction.contact_system import Stretch
 from axlespan.interaction.convoy import Convoy
 from axlespan.interaction.drive import Couple, Leaper
@@ -47,6 +46,7 @@ class NonlinearMarch(FusedMarch):
     """
 
     needs_systems = True
+    damps_modes = False
     _coupling: NonlinearCoupling
 
     @classmethod
@@ -91,11 +91,6 @@ class NonlinearMarch(FusedMarch):
         blocks = [S[a:b][:, a:b].toarray() for a, b in pairwise(starts.tolist())]
         begin = np.cumsum([0, *(block.size for block in blocks)])[:-1].astype(np.int64)
         return starts, begin, np.concatenate([(0.5 * (block + block.T)).ravel() for block in blocks])
-
-    @classmethod
-    def _serves_modal(cls, integrator: Integrator) -> bool:
-        """The interface asks the band alone for columns."""
-        return False
 
     # --- steps -----------------------------------------------------------------------------------
 
