@@ -185,6 +185,15 @@ class TestTrackInSpace:
         assert result.checks["equilibrium_residual"] < 1e-8
         assert -5e-3 < result.sensor_displacement[:, 0].min() < -5e-4
 
+    def test_a_deck_with_beams_across_its_ends_only(self):
+        """Its cross beams inside the span are none; the load of both rails comes to the bearings."""
+        grid = beam_grid(**{**GRID, "cross_beams": 1})
+        track = with_track(grid, ballasted_track(), approach=30.0, exit=30.0)
+        u, load = under(track, {("left", 12.0): 1e5, ("right", 12.0): 1e5})
+        pushed = track.system.stiffness @ u - load
+        held = track.system.prescribed[[name.endswith(".z") for name in track.system.support_names]]
+        assert pushed[held].sum() == pytest.approx(2e5, rel=1e-6)
+
     def test_a_deck_without_lines_under_the_rails(self):
         grid = beam_grid(**GRID, lines={"main": 0.0})
         with pytest.raises(

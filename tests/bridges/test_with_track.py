@@ -17,6 +17,7 @@ from axlespan.bridges import (
     usual_approach,
     with_track,
 )
+from axlespan.bridges.condition import in_condition
 from axlespan.errors import InputError
 from axlespan.linalg.factor import factorize
 
@@ -313,6 +314,21 @@ class TestBadInput:
         bare = asp.Structure(bridge.system, bridge.lines, "matrices")
         with pytest.raises(InputError, match="must be a finite element model: matrices is given by matrices"):
             with_track(bare, ballasted_track())
+
+    def test_springs_that_follow_a_law_already(self):
+        """Track is laid and stiffness changed before laws are given; a law in the model itself stays."""
+        bearings = [
+            asp.bridges.SupportAt(x, name=n, stiffness={"z": 1e9}) for x, n in ((0.0, "a"), (24.0, "b"))
+        ]
+        bridge = simple_span(**{**DECK, "length": 24.0, "supports": bearings})
+        lifting = asp.bridges.with_unilateral_springs(bridge, "support a")
+        message = "'support a': follows a law already, which would be lost. Give laws last"
+        with pytest.raises(InputError, match=f"bridge = {message}"):
+            with_track(lifting, ballasted_track())
+        with pytest.raises(InputError, match=f"structure = {message}"):
+            in_condition(lifting, stiffness=0.9)
+        track = asp.bridges.with_unilateral_springs(with_track(bridge, ballasted_track()), "support a")
+        assert [springs.name for springs in track.system.nonlinear] == ["support a"]
 
     def test_a_zone_off_the_track(self):
         with pytest.raises(InputError, match=r"zones\.0 = '200 to 210 m': lies off the track"):

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from axlespan.bridges.spring_laws import require_no_laws
 from axlespan.elements.beam import BeamProperties
 from axlespan.errors import InputError
 from axlespan.model.compile import compile_model
@@ -82,6 +83,7 @@ def in_condition(structure: Structure, damage: Sequence[Damage] = (), stiffness:
         raise InputError(
             "lies beside the structure", field=f"damage.{number}.from", value=damage[number].start
         )
+    require_no_laws(structure, "structure")
     changed = replace(model, parts=tuple(parts))
     # paths stay: interpolation under a wheel depends on ratios of stiffnesses alone, which share the factor
     return replace(structure, model=changed, system=compile_model(changed).system)

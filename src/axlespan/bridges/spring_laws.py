@@ -13,7 +13,7 @@ from axlespan.errors import InputError
 from axlespan.model.assembly import element_dofs
 from axlespan.model.compile import dof_table
 from axlespan.model.dofs import nearest
-from axlespan.model.nonlinear import ScaledLaw, SpringLaw, UnilateralSpring
+from axlespan.model.nonlinear import NonlinearPart, ScaledLaw, SpringLaw, UnilateralSpring
 from axlespan.model.parts import SpringPart
 from axlespan.model.system import SpringRows
 from axlespan.running.structure import Structure
@@ -22,6 +22,25 @@ FloatArray = npt.NDArray[np.float64]
 
 #: A law of springs from their stiffness [N/m] and damping [N s/m], (n_spring,).
 LawOf = Callable[[FloatArray, FloatArray], SpringLaw]
+
+
+def require_no_laws(structure: Structure, field: str) -> None:
+    """Refuse to build a structure anew that has laws beside its model, which would be lost.
+
+    Raises
+    ------
+    InputError
+    """
+    model = structure.model
+    own = {part.name for part in model.parts if isinstance(part, NonlinearPart)} if model else set()
+    for springs in structure.system.nonlinear:
+        if springs.name not in own:
+            raise InputError(
+                "follows a law already, which would be lost",
+                field=field,
+                value=springs.name,
+                fix="Give laws last",
+            )
 
 
 def with_spring_law(

@@ -39,7 +39,8 @@ class Divisible(Protocol):
 def element_dofs(part: Part, table: DofTable) -> IntArray:
     """Numbers (n_element, n_dof) of the d.o.f. of each element, node by node."""
     numbers = table.number[part.nodes][:, :, component_indices(part.components)]
-    return numbers.reshape(len(part.nodes), -1)
+    count, *each = numbers.shape  # there may be none
+    return numbers.reshape(count, each[0] * each[1])
 
 
 def assemble(
