@@ -20,31 +20,23 @@ _TOGETHER = 4
 
 
 @as_compiled
-def take_in(lanes: Any, fleet: Any, alike: Any) -> None:
-    """Copy states (3, n) and contact forces of the fleet."""
+def exchange(lanes: Any, fleet: Any, alike: Any, inward: bool) -> None:
+    """Copy states (3, n) and contact forces from the fleet, or to it."""
     L, values, every_force = len(lanes), fleet[4], fleet[0]
     forces, state, (first_dofs, first_contacts), n_dof = alike[0], alike[2], alike[10], alike[11]
     for c in range(len(first_dofs)):
         for which in range(3):
-            into = state[which]
+            own = state[which]
             for i in range(n_dof):
-                into[i * L + c] = values[which, first_dofs[c] + i]
+                if inward:
+                    own[i * L + c] = values[which, first_dofs[c] + i]
+                else:
+                    values[which, first_dofs[c] + i] = own[i * L + c]
         for i in range(len(forces) // L):
-            forces[i * L + c] = every_force[first_contacts[c] + i]
-
-
-@as_compiled
-def give_back(lanes: Any, fleet: Any, alike: Any) -> None:
-    """Copy states and contact forces to the fleet."""
-    L, values, every_force = len(lanes), fleet[4], fleet[0]
-    forces, state, (first_dofs, first_contacts), n_dof = alike[0], alike[2], alike[10], alike[11]
-    for c in range(len(first_dofs)):
-        for which in range(3):
-            source = state[which]
-            for i in range(n_dof):
-                values[which, first_dofs[c] + i] = source[i * L + c]
-        for i in range(len(forces) // L):
-            every_force[first_contacts[c] + i] = forces[i * L + c]
+            if inward:
+                forces[i * L + c] = every_force[first_contacts[c] + i]
+            else:
+                every_force[first_contacts[c] + i] = forces[i * L + c]
 
 
 @as_compiled

@@ -17,11 +17,10 @@ import numpy as np
 
 from axlespan.compiled import as_compiled
 from axlespan.interaction.fused.alike_kernel import (
-    give_back,
+    exchange,
     on_ground_alike,
     predict_alike,
     take_alike,
-    take_in,
 )
 from axlespan.interaction.fused.contact_kernel import fill_system, pack_rows, room_for, solve_system
 from axlespan.interaction.fused.lane_vectors import plus, put, read, scaled
@@ -63,7 +62,7 @@ def march(
         gap = np.zeros(len(forces))
     else:
         forces, gap = alike[0], alike[1]
-        take_in(lanes, fleet, alike)
+        exchange(lanes, fleet, alike, True)
     most = 0
     for s in range(len(ends) - 1):
         most = max(most, ends[s + 1] - ends[s])
@@ -157,7 +156,7 @@ def march(
                 )
                 if not solve_system(S, within, len(own), b):
                     if alike is not None:
-                        give_back(lanes, fleet, alike)
+                        exchange(lanes, fleet, alike, False)
                     return k
                 for i in range(len(own)):
                     forces[own[i]] = b[i]
@@ -184,7 +183,7 @@ def march(
     added[reach[0] * L + w : reach[1] * L + w] = 0.0
     reach[:] = 0
     if alike is not None:
-        give_back(lanes, fleet, alike)
+        exchange(lanes, fleet, alike, False)
     return stop
 
 
