@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import tempfile
 import time
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-from axlespan.interaction.runs import run_plan, run_plans
+from axlespan.interaction.runs import run_plan
 from axlespan.study.sweep import Study
 from axlespan.study.sweep.workshop import forget
 from benchmarks.timing import Row, in_turns
 
 SPEEDS = {"from": "140 km/h", "to": "420 km/h", "step": "5 km/h"}
+FEW = ["140 km/h", "280 km/h", "420 km/h"]  # a chunk of lanes
 # Scenarios that are run singly: every so many of the study.
 EVERY, EVERY_QUICK = 17, 44
 
@@ -27,7 +29,7 @@ BRIDGE = {
 }
 
 
-def hslm() -> Study:
+def hslm(speeds: object = SPEEDS) -> Study:
     """Ten trains of axle loads × 57 speeds on a span of 40 m."""
     base = {
         "structure": BRIDGE,
@@ -36,10 +38,10 @@ def hslm() -> Study:
         "analysis": {"time_step": "2 ms"},
         "output": {"sensors": {"midspan": "20 m"}, "reactions": False},
     }
-    return Study(base, {"train": "hslm-a", "crossing.speed": SPEEDS}, passage={"after": "1 s"})
+    return Study(base, {"train": "hslm-a", "crossing.speed": speeds}, passage={"after": "1 s"})
 
 
-def vehicles() -> Study:
+def vehicles(speeds: object = SPEEDS) -> Study:
     """A train of full vehicles × 57 speeds on the same span with ballasted track."""
     base = {
         "structure": {**BRIDGE, "track": {"kind": "ballasted", "preset": "zhai-2004"}},
@@ -48,19 +50,19 @@ def vehicles() -> Study:
         "analysis": {"time_step": "2 ms"},
         "output": {"sensors": {"midspan": "20 m"}, "reactions": False},
     }
-    return Study(base, {"crossing.speed": SPEEDS}, passage={"after": "1 s"})
+    return Study(base, {"crossing.speed": speeds}, passage={"after": "1 s"})
 
 
-def measured(study: Study, every: int = EVERY) -> dict[str, float | str]:
+def measured(made: Callable[..., Study], every: int = EVERY) -> dict[str, float | str]:
     """Processor time for each scenario: all of them in a sweep, and some of them singly, step by step compared.
 
     What is done once in a process (modules are read, loops are compiled) is done before. A single one builds its
     structure and its train, as the sweep does once.
     """
-    last = len(study.scenarios) - 1
-    plans = [study.scenario(number).built.plan for number in (0, last // 2, last)]  # a chunk of lanes
-    run_plans(plans)
-    run_plans(plans[:1])
+    study, few = made(), made(FEW)
+    with tempfile.TemporaryDirectory() as folder:
+        few.run(Path(folder) / "store")
+    run_plan(study.scenario(0).built.plan)
     steps = [scenario.built.plan.settings.steps for scenario in study.scenarios]
     forget()
     begun = time.process_time()
@@ -87,6 +89,6 @@ def measured(study: Study, every: int = EVERY) -> dict[str, float | str]:
 def run(runs: int, quick: bool = False) -> list[Row]:
     """Both studies; the ratio of singly to the sweep stands in the facts."""
     every = EVERY_QUICK if quick else EVERY
-    first = in_turns("10 HSLM x 57 speeds, 40 m", {"sweep": lambda: measured(hslm(), every)}, runs)
-    second = in_turns("ICE 3 x 57 speeds, 40 m, track", {"sweep": lambda: measured(vehicles(), every)}, runs)
+    first = in_turns("10 HSLM x 57 speeds, 40 m", {"sweep": lambda: measured(hslm, every)}, runs)
+    second = in_turns("ICE 3 x 57 speeds, 40 m, track", {"sweep": lambda: measured(vehicles, every)}, runs)
     return [*first, *second]
