@@ -36,7 +36,7 @@ def test_what_goes_one_by_one_goes_in_small_batches(axlespan, path):
         "{vehicle: axle-loads, loads: 100 kN}", "{vehicle: sprung-mass, mass: 9 t, stiffness: 1 MN/m}"
     )
     said = {
-        "rigid": "3, of up to 16 scenarios side by side",
+        "rigid": "5, of up to 8 scenarios side by side",
         "hertz": "5, of up to 8 scenarios one after another",
     }
     for contact, words in said.items():
@@ -52,7 +52,7 @@ def test_check_says_what_it_will_take(axlespan, path):
     assert answer.out.startswith("Two speeds\n")
     assert lines["scenarios"] == "2: 2 of crossing.speed"
     assert lines["structures"] == "1 factorization"
-    assert lines["batches"].startswith("1, of up to 16")
+    assert lines["batches"].startswith("1, of up to 8")
     assert "on one core" in lines["time"] and lines["disk"].startswith("about")
     assert (
         answer.out.splitlines()[-1] == f"The study is in order. Run it with: axlespan sweep {path} -o FOLDER"

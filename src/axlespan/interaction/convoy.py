@@ -25,7 +25,8 @@ from axlespan.interaction.start import Start
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-# Steps of a stretch, and the entries of contact systems and of contact rows that one may hold.
+# Steps of a stretch (half as many for crossings side by side, whose memory they share), and the entries of contact
+# systems and of contact rows that one may hold.
 _STRETCH, _ENTRIES, _ROWS = 1024, 12_000_000, 4_000_000
 
 # There is something to tell about every half a second; what a step takes for each byte of the factor [s].
@@ -94,7 +95,8 @@ class Convoy:
         alone = _PER_BYTE * self.prepared.integrator.factor.nbytes
         seconds = alone * (2 + len(self.lanes)) / 3
         often = int(_NEWS / max(seconds, _NEWS / _STRETCH))
-        n_step = max(16, min(_STRETCH, _ENTRIES // max(size, 1), often))
+        most = _STRETCH if len(self.lanes) == 1 else _STRETCH // 2
+        n_step = max(16, min(most, _ENTRIES // max(size, 1), often))
         left = [lane.left for lane in self.lanes]
         n_step = min(n_step, max(left) if idle else min(left))
         first = max(lane.done for lane in self.lanes) + 1

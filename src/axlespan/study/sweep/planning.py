@@ -16,7 +16,7 @@ from axlespan.study.sweep.workshop import Task
 
 IntArray = npt.NDArray[np.int64]
 
-MOST_LANES: Final = 16
+MOST_LANES: Final = 8
 """Most scenarios side by side: beyond, what they work on does not fit into a processor's cache any more."""
 
 MOST_OF_LARGE: Final = 32
