@@ -17,8 +17,14 @@ from axlespan.vehicles.train import Train
 
 pytest.importorskip("numba")
 
-SPAN = simple_span(length=25.0, youngs_modulus=2.87e9, second_moment=2.9, mass_per_length=2303.0, elements=20)
+BEAM = dict(length=25.0, youngs_modulus=2.87e9, second_moment=2.9, mass_per_length=2303.0)
+SPAN = simple_span(**BEAM, elements=20)
 TRACK = with_track(SPAN, ballasted_track(), approach=25.0, exit=25.0)
+DAMPED = simple_span(**BEAM, elements=140, damping=Modal(0.03, modes=11))
+DAMPED_TRACK = with_track(
+    simple_span(**BEAM, elements=20, damping=Modal(0.03)), ballasted_track(), approach=25.0, exit=25.0
+)
+SMALL = simple_span(**BEAM, elements=11, damping=Modal(0.03))
 MASSES = Train.of(
     sprung_mass(mass=5750.0, stiffness=1.595e6, damping=3e4, unsprung_mass=600.0), count=3, spacing=4.0
 )
@@ -77,39 +83,6 @@ def compared(cases, alpha, tolerance, monkeypatch):
 def test_same_numbers(structure, tolerance, alpha, count, monkeypatch):
     """One crossing, two one after the other, eight side by side and two more; all leave at different times."""
     compared(crossings(structure, count), alpha, tolerance, monkeypatch)
-
-
-DAMPED = simple_span(
-    length=25.0,
-    youngs_modulus=2.87e9,
-    second_moment=2.9,
-    mass_per_length=2303.0,
-    elements=140,
-    damping=Modal(0.03, modes=11),
-)
-DAMPED_TRACK = with_track(
-    simple_span(
-        length=25.0,
-        youngs_modulus=2.87e9,
-        second_moment=2.9,
-        mass_per_length=2303.0,
-        elements=20,
-        damping=Modal(0.03),
-    ),
-    ballasted_track(),
-    approach=25.0,
-    exit=25.0,
-)
-
-
-SMALL = simple_span(
-    length=25.0,
-    youngs_modulus=2.87e9,
-    second_moment=2.9,
-    mass_per_length=2303.0,
-    elements=11,
-    damping=Modal(0.03),
-)
 
 
 @pytest.mark.parametrize("structure", [DAMPED, DAMPED_TRACK, SMALL], ids=["span", "track", "small"])

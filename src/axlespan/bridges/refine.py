@@ -98,11 +98,7 @@ def _moved(line: _Carried, beams: BeamTable, positions: FloatArray) -> FloatArra
     if not len(inner) or not len(order):
         return result
     at = line.breaks[inner]
-    after = (
-        np.clip(np.searchsorted(order, at), 1, len(order) - 1) if len(order) > 1 else np.zeros(len(at), int)
-    )
-    before = np.maximum(after - 1, 0)
-    nearest = np.where(at - order[before] <= order[after] - at, before, after)
+    nearest = np.searchsorted(0.5 * (order[:-1] + order[1:]), at)
     way = np.abs(order[nearest] - at)
     free = way <= 0.5 * np.minimum(at - line.breaks[inner - 1], line.breaks[inner + 1] - at)
     for place in np.unique(nearest[free]):  # of several nodes, the nearest one

@@ -39,22 +39,21 @@ class ModalDamping:
         assert low_rank is not None
         c = low_rank.coefficients
         U, W, core = factor.parts
-        m = -(-U.shape[1] // PIECE) * PIECE
+        more = -U.shape[1] % PIECE
         dofs = np.flatnonzero(np.any(U != 0.0, axis=1))
         dofs = dofs[np.argsort(rank[dofs])]
         return cls(
             rank[dofs],
-            _padded(U[dofs], m),
-            _padded(c[c > 0.0], m),
-            _padded(_padded(core, m).T, m),
-            _padded(W, m),
+            _widened(U[dofs], more),
+            np.pad(c[c > 0.0], (0, more)),
+            np.ascontiguousarray(np.pad(core, (0, more))),
+            _widened(W, more),
         )
 
 
-def _padded(values: FloatArray, m: int) -> FloatArray:
-    """With zeros behind the last entries (…, m)."""
-    widths = [(0, 0)] * (values.ndim - 1) + [(0, m - values.shape[-1])]
-    return np.ascontiguousarray(np.pad(values, widths))
+def _widened(rows: FloatArray, more: int) -> FloatArray:
+    """Rows (n, m), each in one piece, with so many zeros behind."""
+    return np.ascontiguousarray(np.pad(rows, ((0, 0), (0, more))))
 
 
 @dataclass(frozen=True, eq=False)

@@ -106,6 +106,7 @@ class FusedMarch:
             self._stretch = stretch
             convoy.tape.arrays[2][...] = convoy.joint.weight  # moving forces stay so
             self._systems = self._systems_of(stretch)
+            self._modal = [self._modal_of(chunk, number) for number, chunk in enumerate(self._chunks)]
             for chunk in self._chunks:
                 chunk.prepare(stretch, structure.lanes)
                 chunk.carry(structure, weight)
@@ -197,7 +198,7 @@ class FusedMarch:
             (self._vectors, np.empty((stretch.n_step, 0)) if external is None else external),
             self._fleet_of(chunk, stretch),
             None if alike is None else alike.arrays,
-            self._modal_of(chunk, number),
+            self._modal[number],
             self._systems[number],
             (near, self._watched, vehicles, forces, sums, self._sums, chunk.lane),
             first,

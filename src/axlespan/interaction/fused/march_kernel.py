@@ -80,7 +80,9 @@ def march(
     for k in range(first, stop):
         n_on, n_here = standing(weights[k], on), standing(known_weights[k], here)
         now = on[:n_on]
-        acting = (0, n if forced and (k == 0 or factors.shape[1]) else 0)
+        acting = (
+            (0, n) if forced and (k == 0 or factors.shape[1]) else (n, 0)
+        )  # rows of extra forces; or none
         if forced:
             low, high = add_load(
                 here[:n_here], known_place[k], known_weights[k], one_by_one, known_forces, -wc, 0, extra
@@ -103,11 +105,7 @@ def march(
                             extra[i * L + c] += factors[k, t] * vectors[t, i]
         if modal is not None:
             damp(lanes, len(width), modal, modal_room, p, late, state, x, added, reach, k > first, extra)
-            acting = (
-                (min(acting[0], rows[0]), max(acting[1], rows[-1] + 1))
-                if acting[1]
-                else (rows[0], rows[-1] + 1)
-            )
+            acting = (min(acting[0], rows[0]), max(acting[1], rows[-1] + 1))
         forward(
             lanes, width, p, late, state, x, added, reach, K, C, damped, lower, extra, acting, ring, ahead, k > first, True
         )  # fmt: skip

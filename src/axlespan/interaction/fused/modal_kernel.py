@@ -27,15 +27,9 @@ _TOGETHER = 4
 @as_compiled
 def room_for_modes(lanes: Any, n_row: int, n_mode: int, n_wheel: int) -> Any:
     """Room for values at the modes' rows, modes, d, d lane by lane, and rows of W under wheels."""
-    L = len(lanes)
-    sizes = (n_row * L, n_mode * L, n_mode * L, n_mode * L, n_wheel * n_mode)
-    return (
-        np.zeros(sizes[0]),
-        np.zeros(sizes[1]),
-        np.zeros(sizes[2]),
-        np.zeros(sizes[3]),
-        np.zeros(sizes[4]),
-    )
+    n_all = n_mode * len(lanes)
+    values, under = np.zeros(n_row * len(lanes)), np.zeros(n_wheel * n_mode)
+    return values, np.zeros(n_all), np.zeros(n_all), np.zeros(n_all), under
 
 
 @as_compiled
