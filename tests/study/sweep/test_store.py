@@ -100,6 +100,20 @@ def test_extremes_are_those_of_the_histories(study, tmp_path):
         assert row["steps"] == len(result.time) - 1
 
 
+def test_a_single_value_where_a_list_may_stand_is_a_number_of_the_table(study_file, tmp_path):
+    """Loads of axles that are drawn: each row tells its own, in N, and its wheels weigh so much."""
+    wheels = (
+        "{vehicle: sprung-mass, mass: 12 t, stiffness: 1.5 MN/m, damping: 20 kNs/m, count: 2, spacing: 5 m}"
+    )
+    base = STUDY[: STUDY.index("vary:")].replace(wheels, "{vehicle: axle-loads, loads: 110 kN}")
+    text = base + "vary: {train.0.loads: [100 kN, 120 kN]}\npassage: {after: 0.1 s}\n"
+    made = Study.load(study_file(text))
+    made.run(tmp_path / "out")
+    table = pd.read_parquet(tmp_path / "out" / "table").sort_values("id")
+    assert table["train.0.loads"].tolist() == [100e3, 120e3]
+    assert table["contact_force_max_N"].tolist() == pytest.approx([100e3, 120e3])
+
+
 def test_a_run_lasts_until_the_last_wheel_has_left(study):
     plan = study.scenario(0).built.plan
     leaves = (10.0 + 5.0) / (100 / 3.6)

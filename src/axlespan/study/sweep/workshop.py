@@ -172,6 +172,8 @@ class Workshop:
         row = {}
         for path, value, label in zip(self.recipe.paths, values, labels, strict=True):
             known = label if label is not None else value if case is None else validated(case, path)
+            if isinstance(known, tuple) and len(known) == 1 and not isinstance(value, list | tuple):
+                known = known[0]  # a single value where a list may stand
             simple = known is None or isinstance(known, str | int | float)
             row[path] = known if simple else json.dumps(value, default=str)
         return row
